@@ -6,7 +6,7 @@ use cleat::{car, cleat, drive, parameters};
 use divan::Bencher;
 use models::axle_d::AxleD;
 use qcar_runtime::model::Model;
-use qcar_runtime::progress::UNTOLD;
+use qcar_runtime::progress::NO_PROGRESS;
 use qcar_runtime::simulate::{Car, Kept, Ridden, Settings, Standard, end_of_ride, ride, rides, rides_abreast};
 
 fn main() {
@@ -38,7 +38,7 @@ fn twelve_cleat_runs(bencher: Bencher<'_, '_>) {
         .into_iter()
         .flat_map(|kmh| roads.iter().map(move |r| drive(r, kmh / 3.6)))
         .collect();
-    bencher.bench_local(|| rides(&car, &drives, &Settings::default(), UNTOLD));
+    bencher.bench_local(|| rides(&car, &drives, &Settings::default(), NO_PROGRESS));
 }
 
 /// Parameters that differ: eight sets of the model's unknowns.

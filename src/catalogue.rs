@@ -1,4 +1,4 @@
-//! Models by the name of a shipped one or by the path of a file.
+//! Models by the name of a shipped model or by the path of a file.
 
 use std::ops::Deref;
 use std::path::Path;
@@ -29,7 +29,7 @@ pub struct Loaded {
     unseen: Vec<Unseen>,
 }
 
-/// Compiled into qcar, or while it runs.
+/// Compiled into qcar, or read at run time.
 enum Program {
     Shipped(&'static dyn Model),
     File(Box<Machine>),
@@ -48,17 +48,17 @@ impl Loaded {
         Loaded::new(compiled, Program::File(Box::new(Machine::new(compiled))))
     }
 
-    /// Checks what the masses are at the values `p` of all parameters.
+    /// Checks the masses at the values `p` of all parameters.
     ///
     /// # Errors
-    /// Every mass that is not above zero.
+    /// Fails with every mass that is not positive.
     pub fn check_inertias(&self, p: &[f64]) -> Result<(), InputError> {
         self.inertias.check(&self.about().name, p)
     }
 }
 
 impl Loaded {
-    /// What no measurement can tell of the model.
+    /// Warnings on parameters that no measurement determines.
     pub fn unseen(&self) -> &[Unseen] {
         &self.unseen
     }
@@ -85,7 +85,7 @@ pub fn is_shipped(model: &str) -> bool {
     models::find(model).is_some()
 }
 
-/// Those names as a list to choose from.
+/// These names as a list, for messages.
 fn listed() -> String {
     names().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }
@@ -93,15 +93,15 @@ fn listed() -> String {
 /// A model that can run.
 ///
 /// # Errors
-/// As [`compiled`].
+/// Fails as [`compiled`] does.
 pub fn load(model: &str) -> Result<Loaded, Failure> {
     load_wanted(model, Wanted::Jacobian)
 }
 
-/// The same with what is wanted of the responses; a shipped model has all of them.
+/// The same with the wanted responses only; a shipped model has all of them.
 ///
 /// # Errors
-/// As [`compiled`].
+/// Fails as [`compiled`] does.
 pub fn load_wanted(model: &str, wanted: Wanted) -> Result<Loaded, Failure> {
     let compiled = compiled_wanted(model, wanted)?;
     Ok(match models::find(model) {
@@ -110,37 +110,37 @@ pub fn load_wanted(model: &str, wanted: Wanted) -> Result<Loaded, Failure> {
     })
 }
 
-/// A model whose text is at hand.
+/// A model from its text.
 ///
 /// # Errors
-/// As [`compiled_text`].
+/// Fails as [`compiled_text`] does.
 pub fn load_text(name: &str, text: &str) -> Result<Loaded, Failure> {
     compiled_text(name, text).map(|compiled| Loaded::file(&compiled))
 }
 
-/// The model that the user wants, else the campaign's: a shipped one, or a file relative to the campaign's folder.
+/// The model of the user, otherwise that of the campaign: a shipped model, or a file relative to the folder of the
+/// campaign.
 ///
 /// # Errors
-/// As [`load`]; a name that is not known is a mistake of the campaign where the user names none. Facts of the vehicle
-/// that nobody knows.
+/// Fails as [`load`] and [`check_campaign`] do. An unknown name is reported in the campaign if it comes from there.
 pub fn of_campaign(campaign: &Campaign, wanted: Option<&str>) -> Result<Loaded, Failure> {
     let model = load(&named_by(campaign, wanted)?)?;
     check_campaign(model.about(), campaign)?;
     Ok(model)
 }
 
-/// All that the compiler derives of the model that the user wants, else of the campaign's.
+/// All results of the compiler for the model of the user, otherwise that of the campaign.
 ///
 /// # Errors
-/// As [`compiled`]; a name that is not known is a mistake of the campaign where the user names none.
+/// Fails as [`compiled`] does. An unknown name is reported in the campaign if it comes from there.
 pub fn compiled_of_campaign(campaign: &Campaign, wanted: Option<&str>) -> Result<Compiled, Failure> {
     compiled(&named_by(campaign, wanted)?)
 }
 
-/// The name or path of the model that the user wants, else of the campaign's.
+/// Name or path of the model of the user, otherwise that of the campaign.
 ///
 /// # Errors
-/// A name that is not known is a mistake of the campaign where the user names none.
+/// Fails if the name is unknown, reported in the campaign if it comes from there.
 pub fn named_by(campaign: &Campaign, wanted: Option<&str>) -> Result<String, Failure> {
     if wanted.is_none() && models::find(&campaign.model).is_none() && !looks_like_a_path(&campaign.model) {
         let (place, found) = (Place::Name("model".into()), format!("`{}`", campaign.model));
@@ -154,26 +154,26 @@ pub fn named_by(campaign: &Campaign, wanted: Option<&str>) -> Result<String, Fai
     })
 }
 
-/// All that the compiler derives of a model.
+/// All results of the compiler for a model.
 ///
 /// # Errors
-/// As [`compile`], and a model that the compiler refuses.
+/// Fails as [`compile`] does, or if the model does not compile.
 pub fn compiled(model: &str) -> Result<Compiled, Failure> {
     compiled_wanted(model, Wanted::Jacobian)
 }
 
-/// The same with what is wanted of the responses.
+/// The same with the wanted responses only.
 ///
 /// # Errors
-/// As [`compiled`].
+/// Fails as [`compiled`] does.
 pub fn compiled_wanted(model: &str, wanted: Wanted) -> Result<Compiled, Failure> {
     compile(model, wanted)?.map_err(|report| Failure::Input(report.to_string()))
 }
 
-/// The same for the text of a model; its family is searched beside the file that `name` would be.
+/// The same from the text of a model; its family is looked for in the folder of `name`.
 ///
 /// # Errors
-/// A model that the compiler refuses.
+/// Fails if the model does not compile.
 pub fn compiled_text(name: &str, text: &str) -> Result<Compiled, Failure> {
     let files = Files::new(Path::new(""));
     let source = Source {
@@ -184,10 +184,10 @@ pub fn compiled_text(name: &str, text: &str) -> Result<Compiled, Failure> {
     compile_wanted(source, &load, Wanted::Jacobian).map_err(|report| Failure::Input(report.to_string()))
 }
 
-/// Compiles a shipped model or a file, with what is wanted of the responses, or gives the compiler's report.
+/// Compiles a shipped model or a file with the wanted responses, or gives the report of the compiler.
 ///
 /// # Errors
-/// A name that is not shipped and is no file, or a file that cannot be read.
+/// Fails if a name is neither shipped nor a file, or if the file cannot be read.
 pub fn compile(model: &str, wanted: Wanted) -> Result<Result<Compiled, Report>, Failure> {
     match models::find(model) {
         Some(shipped) => Ok(compile_shipped(shipped, wanted)),
@@ -202,10 +202,10 @@ pub fn compile(model: &str, wanted: Wanted) -> Result<Result<Compiled, Report>, 
     }
 }
 
-/// Every member of the family in a file: its options, and what the checks say.
+/// Every member of the family in a file: its options, and the result of the checks.
 ///
 /// # Errors
-/// A file that cannot be read, or is no family.
+/// Fails if the file cannot be read or is no family.
 pub fn members(file: &str) -> Result<Vec<Member>, Failure> {
     let text = read_text(Path::new(file))?;
     let source = Source {
@@ -234,7 +234,7 @@ fn compile_shipped(shipped: &Shipped, wanted: Wanted) -> Result<Compiled, Report
     compile_wanted(source, &family, wanted)
 }
 
-/// True for what can be no shipped name.
+/// True for a string that cannot be the name of a shipped model.
 pub fn looks_like_a_path(name: &str) -> bool {
     name.contains(['/', '\\', '.'])
 }

@@ -65,7 +65,7 @@ enum Verb {
 }
 
 impl Cli {
-    /// Does what the flags say and gives the text for standard output.
+    /// Runs the verb and returns the text for standard output.
     pub fn run(self) -> Result<String, Failure> {
         terminal::detect(self.color);
         if let Some(units) = self.units {

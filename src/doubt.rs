@@ -1,20 +1,20 @@
-//! Units that the samples of a channel contradict: only the engineer knows what they are.
+//! Units that the samples of a channel contradict; the engineer decides.
 
 use qcar_signals::si::{in_si, is_known};
 
-/// A body that stands is accelerated by 1 g, if gravity is not taken off: means within this part of 1.
+/// A body at rest has an acceleration of 1 g if gravity is not subtracted: tolerance of the mean, relative to 1 g.
 const ABOUT_ONE: f64 = 0.05;
-/// No suspension travels so far, m.
+/// Largest plausible suspension travel, m.
 const TRAVEL: f64 = 1.0;
 
-/// What a channel does, in its unit.
+/// Statistics of a channel, in its unit.
 pub(crate) struct Does {
     pub mean: f64,
     pub min: f64,
     pub max: f64,
 }
 
-/// What is odd about a unit, beside what a channel does; nothing where it may be right.
+/// Doubt about a unit from these statistics; `None` if it may be right.
 pub(crate) fn doubt(unit: &str, does: Option<Does>) -> Option<String> {
     if unit.is_empty() {
         return None;

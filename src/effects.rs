@@ -1,4 +1,4 @@
-//! Effects by the name of a shipped one or by the path of a file.
+//! Effects by the name of a shipped effect or by the path of a file.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -12,26 +12,26 @@ use crate::catalogue::looks_like_a_path;
 use crate::failure::{Failure, flag};
 use crate::files::read_text;
 
-/// What may be missing in a model.
+/// Effects and laws that a model may lack.
 pub struct Catalogue {
     /// The effects.
     pub effects: Vec<Patch>,
-    /// Laws that name no cause.
+    /// Laws without a physical cause.
     pub laws: Vec<Patch>,
 }
 
 /// All shipped effects, by name.
 ///
 /// # Errors
-/// None, as long as the build reads what it ships.
+/// Never fails if the build has read the shipped files.
 pub fn all() -> Result<Vec<Patch>, Failure> {
     read_all(models::effects())
 }
 
-/// All that may be missing in a model: the shipped effects, and the shipped laws that name no cause.
+/// The shipped effects, and the shipped laws without a physical cause.
 ///
 /// # Errors
-/// None, as long as the build reads what it ships.
+/// Never fails if the build has read the shipped files.
 pub fn catalogue() -> Result<Catalogue, Failure> {
     Ok(Catalogue {
         effects: all()?,
@@ -43,10 +43,10 @@ fn read_all(shipped: &[models::ShippedEffect]) -> Result<Vec<Patch>, Failure> {
     shipped.iter().map(|own| read(own.file, own.text)).collect()
 }
 
-/// The effect of a name or path, in the form of a name or else in all.
+/// The effect with a name or path, in one form or in all.
 ///
 /// # Errors
-/// A name that is not shipped and is no file, a file that the compiler refuses, or a form that the effect does not have.
+/// Fails if a name is neither shipped nor a file, if the file does not compile, or if the effect lacks the form.
 pub fn find(effect: &str, form: Option<&str>) -> Result<Patch, Failure> {
     let patch = named(effect)?;
     let Some(form) = form else { return Ok(patch) };
@@ -61,10 +61,10 @@ pub fn find(effect: &str, form: Option<&str>) -> Result<Patch, Failure> {
     })
 }
 
-/// The effect of a name or of a file that holds one; `None` where the name means anything else.
+/// The effect with a name or in a file; `None` if the name is that of something else.
 ///
 /// # Errors
-/// A file that the compiler refuses.
+/// Fails if the file does not compile.
 pub fn of_name(name: &str) -> Option<Result<Patch, Failure>> {
     if let Some(shipped) = shipped(name) {
         return Some(read(shipped.file, shipped.text));
@@ -73,7 +73,7 @@ pub fn of_name(name: &str) -> Option<Result<Patch, Failure>> {
     holds_effect(name, &text).then(|| read(name, &text))
 }
 
-/// The units of the parameters of a shipped effect, by name; none of an effect that is not shipped.
+/// The units of the parameters of a shipped effect, by name; empty for any other effect.
 pub fn units(effect: &str) -> BTreeMap<String, String> {
     let Some(Ok(patch)) = of_name(effect) else {
         return BTreeMap::new();

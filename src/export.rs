@@ -11,19 +11,19 @@ pub mod matlab;
 
 use qcar_dsl::schedule::Compiled;
 
-/// A model and the values that its parameters have until somebody changes them.
+/// A model and the initial values of its parameters.
 #[derive(Clone, Copy)]
 pub struct Subject<'a> {
-    /// All that the compiler derives of it.
+    /// All results of the compiler.
     pub compiled: &'a Compiled,
-    /// One for each parameter, SI.
+    /// A value for each parameter, SI.
     pub values: &'a [f64],
 }
 
-/// A file that is to be written.
+/// A file to be written.
 pub struct File {
-    /// Its name, without a folder.
+    /// Name without folder.
     pub name: String,
-    /// All of it.
+    /// Content.
     pub content: Vec<u8>,
 }

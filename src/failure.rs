@@ -1,20 +1,20 @@
-//! Why a verb stops, and the exit status that says so.
+//! Reasons why a verb stops, and their exit status.
 
 use std::fmt;
 
 use qcar_runtime::error::{InputError, Place, Problem};
 
-/// Why a verb stops.
+/// Reason why a verb stops.
 #[derive(Debug)]
 pub enum Failure {
-    /// The work is done and has found something wrong: the text for standard output. Exit status 1.
+    /// The verb has found a fault: the text for standard output. Exit status 1.
     Finding(String),
-    /// What was given cannot be used: the text for standard error. Exit status 2.
+    /// The input cannot be used: the text for standard error. Exit status 2.
     Input(String),
 }
 
 impl Failure {
-    /// What the shell sees.
+    /// Exit status for the shell.
     pub fn exit_status(&self) -> u8 {
         match self {
             Failure::Finding(_) => 1,

@@ -1,47 +1,47 @@
-//! Curves over frequency or time as an SVG drawing that needs nothing else to be shown.
+//! Curves over frequency or time as a self-contained SVG.
 
 use std::fmt::Write;
 
 /// Panels in rows that share their legend.
 pub struct Figure {
-    /// What all panels show.
+    /// Title.
     pub title: String,
-    /// What stands on the horizontal axes.
+    /// The horizontal axis of all panels.
     pub across: Across,
-    /// From left to right, then down.
+    /// Panels from left to right, then down.
     pub panels: Vec<Panel>,
 }
 
 /// A horizontal axis.
 #[derive(Clone, Copy)]
 pub enum Across {
-    /// Hz, logarithmic.
+    /// Frequency, Hz, logarithmic.
     Frequency,
-    /// s.
+    /// Time, s.
     Time,
 }
 
 /// A diagram.
 pub struct Panel {
-    /// Above the diagram.
+    /// Title of the diagram.
     pub title: String,
-    /// What the vertical axis shows, with its unit.
+    /// Label of the vertical axis, with its unit.
     pub vertical: String,
-    /// Drawn in this order.
+    /// Curves in drawing order.
     pub curves: Vec<Curve>,
 }
 
 /// A line through points of ascending frequency or time.
 pub struct Curve {
-    /// In the legend.
+    /// Label in the legend.
     pub label: &'static str,
-    /// How it is drawn.
+    /// Line style.
     pub style: Style,
-    /// Frequency in Hz or time in s, and value; what is not finite is left out.
+    /// Frequency in Hz or time in s, and value; points that are not finite are left out.
     pub points: Vec<(f64, f64)>,
 }
 
-/// How a curve is drawn.
+/// Line style of a curve.
 #[derive(Clone, Copy)]
 #[expect(missing_docs, reason = "each is one role of a curve in a comparison")]
 pub enum Style {
@@ -57,7 +57,7 @@ const RIGHT: f64 = 14.0;
 const TOP: f64 = 28.0;
 const BOTTOM: f64 = 44.0;
 
-/// Panels in a row.
+/// Number of panels in a row.
 const COLUMNS: usize = 3;
 
 /// Space for the title above the panels and for the legend below them.
@@ -70,7 +70,7 @@ svg{background:#fff}text{font:12px sans-serif;fill:#222}.title{font-weight:bold}
 .measured{stroke:#aaa;stroke-width:4.5}.before{stroke:#c77700;stroke-dasharray:5 3}.after{stroke:#0068b5}";
 
 impl Figure {
-    /// The drawing.
+    /// The SVG text.
     pub fn svg(&self) -> String {
         let rows = self.panels.len().div_ceil(COLUMNS);
         let width = WIDTH * self.panels.len().min(COLUMNS) as f64;
@@ -180,7 +180,7 @@ impl Across {
     }
 }
 
-/// From places on the axes to places on the page.
+/// From axis coordinates to page coordinates.
 struct Scale {
     across: Across,
     x: (f64, f64),
@@ -188,7 +188,7 @@ struct Scale {
 }
 
 impl Scale {
-    /// Around all points of a panel; `None` where there are none.
+    /// Range of all points of a panel; `None` without points.
     fn over(panel: &Panel, across: Across) -> Option<Scale> {
         let points = || {
             panel

@@ -7,10 +7,10 @@ use std::{fs, process};
 use qcar_runtime::bounded;
 use qcar_runtime::error::{InputError, Place, Problem};
 
-/// Reads a text file, or says why it cannot.
+/// Reads a text file.
 ///
 /// # Errors
-/// A file that is missing, a folder, or not UTF-8.
+/// Fails if the file is missing, a folder, or not UTF-8.
 pub fn read_text(file: &Path) -> Result<String, InputError> {
     bounded::text(file).map_err(|error| {
         let remedy = "correct the path, or put the file there";
@@ -18,11 +18,10 @@ pub fn read_text(file: &Path) -> Result<String, InputError> {
     })
 }
 
-/// The value of a flag that names a folder for results: refused before the work for it is begun where nothing can be
-/// written. Nothing stays there.
+/// Value of a flag for a folder of results. It is tested before the work starts, and the test leaves no file.
 ///
 /// # Errors
-/// What the system says of a file in the folder, or in the one in which it is to be made.
+/// Fails with the error of the system if a file in the folder, or the folder itself, cannot be created.
 pub fn folder_for_results(name: &str) -> Result<PathBuf, String> {
     let folder = PathBuf::from(name);
     let existing = folder.ancestors().find(|own| own.exists()).unwrap_or(Path::new("."));
@@ -36,13 +35,13 @@ pub fn folder_for_results(name: &str) -> Result<PathBuf, String> {
     }
 }
 
-/// The files that stand complete, in the order in which they were written; held while one is being written.
+/// Completed files in the order of writing. The lock is held while a file is written.
 static WRITTEN: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Writes a file whole under another name, then renames it, so that no half-written file seems complete.
+/// Writes a file under a temporary name, then renames it, so that no incomplete file looks complete.
 ///
 /// # Errors
-/// A folder that cannot be made or written to.
+/// Fails if the folder cannot be created or written to.
 pub fn put(folder: &Path, name: &str, content: &(impl AsRef<[u8]> + ?Sized)) -> Result<(), InputError> {
     let (path, unfinished) = (folder.join(name), folder.join(format!("{name}.part")));
     let mut written = close();
@@ -55,7 +54,7 @@ pub fn put(folder: &Path, name: &str, content: &(impl AsRef<[u8]> + ?Sized)) -> 
             Ok(())
         }
         Err(error) => {
-            // Of no use to anybody; where even that fails, its name says what it is.
+            // Removes the incomplete file. If that fails too, the temporary name shows that it is incomplete.
             let _ = fs::remove_file(&unfinished);
             let remedy = "choose another folder, or free some space there";
             Err(Problem::new(path, Place::File, error.to_string(), "a writable place", remedy).into())
@@ -66,7 +65,7 @@ pub fn put(folder: &Path, name: &str, content: &(impl AsRef<[u8]> + ?Sized)) -> 
 /// Gives a complete file its final name.
 ///
 /// # Errors
-/// What the system says.
+/// Fails with the error of the system.
 pub fn finish(unfinished: &Path, path: &Path) -> Result<(), InputError> {
     let mut written = close();
     fs::rename(unfinished, path).map_err(|error| {
@@ -83,7 +82,7 @@ pub fn finish(unfinished: &Path, path: &Path) -> Result<(), InputError> {
     Ok(())
 }
 
-/// Waits for the file that is being written. As long as the list of complete files is held, no other is begun.
+/// Waits for the file that is being written. While the guard is held, no other file is started.
 pub fn close() -> MutexGuard<'static, Vec<PathBuf>> {
     WRITTEN.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -22,21 +22,21 @@ pub enum Kind {
     Mdf,
 }
 
-/// What was sampled in one run, SI.
+/// Samples of one run, SI.
 pub struct History {
-    /// The name of the run, and of its file.
+    /// Name of the run, and of its file.
     pub name: String,
-    /// s
+    /// Times, s.
     pub time: Vec<f64>,
-    /// Each with as many samples as there are times.
+    /// Channels, with as many samples as there are times.
     pub channels: Vec<Channel>,
 }
 
 impl History {
-    /// Writes it into a folder.
+    /// Writes the file into a folder.
     ///
     /// # Errors
-    /// A folder that cannot be written to.
+    /// Fails if the folder cannot be written to.
     pub fn put(&self, folder: &Path, kind: Kind) -> Result<(), InputError> {
         match kind {
             Kind::Csv => put(folder, &format!("{}.csv", self.name), &self.csv()),
@@ -62,7 +62,7 @@ impl History {
         out
     }
 
-    /// A capture as dSPACE writes it: the variable that most viewers take for time histories with units.
+    /// A capture as dSPACE writes it, which most viewers recognise as time histories with units.
     fn mat(&self) -> Vec<u8> {
         let fields = || ["Name", "Unit", "Data", "XIndex"].map(String::from).to_vec();
         let element = |name: &str, unit: &str, samples: &[f64]| {

@@ -1,4 +1,4 @@
-//! Masses that a parameter set makes zero or negative, so that results would be meaningless.
+//! Masses that a parameter set makes zero or negative, which makes results meaningless.
 
 use qcar_dsl::expr::{Expr, Graph, Symbol};
 use qcar_dsl::model::CoordinateKind;
@@ -12,13 +12,13 @@ pub struct Inertias {
 }
 
 struct Inertia {
-    /// The line that declares it.
+    /// The line of its declaration.
     line: String,
     value: Expr,
 }
 
 impl Inertias {
-    /// Those of a model.
+    /// The inertias of a model.
     pub fn of(compiled: &Compiled) -> Inertias {
         let inertia = |coordinate: &qcar_dsl::model::Coordinate| match coordinate.kind {
             CoordinateKind::Mass(value) => Some(Inertia {
@@ -33,10 +33,10 @@ impl Inertias {
         }
     }
 
-    /// Checks them at the values `p` of all parameters of the model called `model`.
+    /// Checks the inertias at the values `p` of all parameters of the model `model`.
     ///
     /// # Errors
-    /// Every inertia that is not above zero.
+    /// Fails with every inertia that is not positive.
     pub fn check(&self, model: &str, p: &[f64]) -> Result<(), InputError> {
         let leaf = |symbol| match symbol {
             Symbol::Parameter(place) => p[usize::from(place)],

@@ -1,4 +1,4 @@
-//! Ctrl-C: finished files stay, no file is left half-written, and the user learns which files are finished.
+//! Ctrl-C: complete files stay, incomplete ones are removed, and the user learns which files are complete.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -8,29 +8,29 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use crate::files;
 use crate::progress;
 
-/// What shells report of a program that Ctrl-C has ended: 128 and the number of the signal.
+/// Exit status that shells report after Ctrl-C: 128 plus the number of the signal.
 const EXIT_STATUS: i32 = 130;
 
-/// What is known by now: whole parts of the answer, and sentences on the way to it.
+/// Interim results: complete parts of the answer, and sentences.
 static KNOWN: Mutex<(String, String)> = Mutex::new((String::new(), String::new()));
 
-/// A folder, a name in it, and the text.
+/// Folder, name and text of a file.
 type Unwritten = (PathBuf, String, String);
 
-/// What is written if the work is stopped now.
+/// Files that are written if the work is stopped now.
 static LEFT: Mutex<Vec<Unwritten>> = Mutex::new(Vec::new());
 
-/// Keeps a whole part of the answer: it goes to standard output if the rest is never known.
+/// Stores a complete part of the answer, which goes to standard output if the work is stopped.
 pub fn keep(part: &str) {
     known().0.push_str(part);
 }
 
-/// Notes what is known on the way to an answer, for the user who does not wait for it.
+/// Stores a sentence on an interim result, for the message after a stop.
 pub fn note(sentence: &str) {
     known().1.push_str(&format!("so far: {sentence}\n"));
 }
 
-/// Keeps files that are to be written if the rest is never known, in place of those that were kept before.
+/// Stores files that are written if the work is stopped, instead of those stored before.
 pub fn leave(folder: &Path, files: Vec<(String, String)>) {
     *left() = files
         .into_iter()
@@ -46,9 +46,9 @@ fn known() -> MutexGuard<'static, (String, String)> {
     KNOWN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// From here on, Ctrl-C ends the program in order.
+/// Installs the handler of Ctrl-C.
 pub fn listen() {
-    // Where a system gives no handler, Ctrl-C ends the program as ever.
+    // On a system without handlers, Ctrl-C ends the program at once.
     let _ = ctrlc::set_handler(end);
 }
 
@@ -62,12 +62,12 @@ fn end() {
         .filter_map(|(folder, name, text)| files::put(folder, name, text).err())
         .map(|error| format!("{error}\n"))
         .collect();
-    // No other file is begun while this is held.
+    // No other file is started while this lock is held.
     let written = files::close();
     let doing = progress::clear().map_or(String::new(), |what| format!(" at {what}"));
     let known = known();
     let (parts, sentences) = (known.0.as_bytes(), &known.1);
-    // Whoever has stopped reading has what was wanted.
+    // A reader that has closed the pipe needs no more output.
     let _ = std::io::stdout().write_all(parts);
     eprint!(
         "interrupted{doing}; {}\n{sentences}{}",

@@ -1,4 +1,4 @@
-//! Results as JSON for other programs.
+//! Results as JSON.
 
 use serde::{Serialize, Serializer};
 
@@ -17,14 +17,14 @@ impl<T> FromIterator<(String, T)> for Ordered<T> {
     }
 }
 
-/// One line of JSON, ended. The types of this crate always serialise.
+/// One line of JSON with its end of line. The types of this crate always serialise.
 pub fn line(value: &impl Serialize) -> String {
     let mut text = serde_json::to_string(value).expect("keys are strings and no field refuses");
     text.push('\n');
     text
 }
 
-/// JSON that may stand in a script of a page: nothing in it ends the script.
+/// JSON that is safe inside a script element of a page.
 pub fn inert(value: &impl Serialize) -> String {
     let json = serde_json::to_string(value).expect("keys are strings and no field refuses");
     json.replace('<', "\\u003c")

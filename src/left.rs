@@ -7,20 +7,20 @@ use qcar_runtime::discover::posterior::Explanation;
 use qcar_runtime::transmissibility::Point;
 use serde::Serialize;
 
-/// What is left of one sensor in one kind of run, on the runs that judge.
+/// Residual of one sensor in one kind of run, on the held-out runs, or on the fitted runs if none is held out.
 #[derive(Serialize)]
 pub(crate) struct Left {
     /// The sensor.
     pub channel: String,
-    /// What its values are.
+    /// Kind of its values.
     pub kind: &'static str,
-    /// RMS of (measured - modelled) over RMS of what was measured, in percent, before.
+    /// RMS of the residual over RMS of the measured signal, percent, before.
     pub before_percent: f64,
     /// The same after.
     pub after_percent: f64,
 }
 
-/// RMS of (measured - modelled) over its uncertainty; `null` where there is no such run.
+/// RMS of the residual over its standard deviation; `null` without such a run.
 #[derive(Serialize)]
 pub(crate) struct BeforeAfter {
     before: Option<f64>,
@@ -37,8 +37,8 @@ impl BeforeAfter {
     }
 }
 
-/// Of every sensor in every kind of run: of held-out runs where there are any, else of the fitted ones. Higher harmonics
-/// are left out: they are next to nothing themselves.
+/// Residuals of every sensor in every kind of run: on the held-out runs, or on the fitted runs if none is held out.
+/// Higher harmonics are left out, because they are small.
 pub(crate) fn left(evidence: &Evidence, [before, after]: [&Explanation; 2]) -> Vec<Left> {
     let role = match evidence.of_role(Role::HeldOut).next() {
         Some(_) => Role::HeldOut,
@@ -58,7 +58,7 @@ pub(crate) fn left(evidence: &Evidence, [before, after]: [&Explanation; 2]) -> V
             .filter(|(_, series)| series.sensor == *sensor && series.kind == kind);
         for (place, series) in own {
             let parts = if kind.complex() { 2 } else { 1 };
-            let residuals = of.gap.residuals[place].chunks(parts).zip(&series.sigma);
+            let residuals = of.misfit.residuals[place].chunks(parts).zip(&series.sigma);
             let scale = 1.0 / parts as f64;
             missed += residuals
                 .map(|(own, sigma)| scale * own.iter().map(|r| (r * sigma).powi(2)).sum::<f64>())
@@ -80,7 +80,7 @@ pub(crate) fn left(evidence: &Evidence, [before, after]: [&Explanation; 2]) -> V
     groups.into_iter().map(left).collect()
 }
 
-/// What kind of run the values are from.
+/// Name of the kind of run.
 fn word(kind: Kind) -> &'static str {
     match kind {
         Kind::Harmonic(_) => "sweep",
@@ -93,7 +93,7 @@ fn word(kind: Kind) -> &'static str {
     }
 }
 
-/// The name of a sensor.
+/// Name of a sensor in tables and JSON.
 pub(crate) fn channel(sensor: &Point) -> String {
     let axis = format!("{:?}", sensor.axis).to_lowercase();
     format!("{}_{axis}", sensor.place().replace(' ', "_"))

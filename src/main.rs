@@ -28,7 +28,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Writes to standard output; a reader that has gone away, such as `head`, has what it wanted.
+/// Writes to standard output. A closed pipe, such as that of `head`, is no error.
 fn print(text: &str, status: u8) -> ExitCode {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {

@@ -1,4 +1,4 @@
-//! Parameter values: from a file, from `--set`, from the model's defaults.
+//! Parameter values from files, from `--set`, and from the defaults of the model.
 
 // Values in a parameter file.
 mod file;
@@ -22,13 +22,13 @@ use crate::units;
 use file::{ParameterFile, numbers};
 use fitted::Answer;
 
-/// `name=value`, as `--set` takes it; the value may have a unit after it.
+/// `name=value` of `--set`; the value may have a unit.
 #[derive(Clone, Debug)]
 pub struct Setting {
     name: String,
-    /// SI.
+    /// Value, SI.
     value: f64,
-    /// The coherent unit of what was declared.
+    /// SI unit of the declared unit.
     unit: Option<String>,
 }
 
@@ -61,12 +61,12 @@ impl FromStr for Setting {
     }
 }
 
-/// The value of every parameter of a model: from `paths`, a later one above an earlier one, with `settings` above them
-/// all and defaults below.
+/// The value of every parameter of a model. Values of `settings` take precedence over those of `paths`, later paths
+/// over earlier ones, and all of them over defaults.
 ///
 /// # Errors
-/// A file that cannot be read or understood, a name that the model does not have, a unit that is not the model's,
-/// a parameter without any value: all of them at once.
+/// Fails with all errors at once: a file that cannot be read, a name that the model lacks, another unit, or a parameter
+/// without a value.
 pub fn resolve<'a>(
     about: &About,
     paths: impl IntoIterator<Item = &'a Path>,
@@ -86,11 +86,11 @@ fn resolved(about: &About, file: ParameterFile, settings: &[Setting]) -> Result<
     InputError::unless_empty(problems, values.ok())
 }
 
-/// What a campaign knows of the vehicle is of use to somebody, and the masses that it names are those of the model.
+/// Checks that the vehicle data of a campaign are used, and that its roles name masses of the model.
 ///
 /// # Errors
-/// Every key of its `[vehicle]` that is neither one of [`FACTS`] nor a parameter of the model, and a name in its `[roles]`
-/// that is no mass on the tyre's axis.
+/// Fails with every key of its `[vehicle]` that is neither one of [`FACTS`] nor a parameter of the model, and with a
+/// name in its `[roles]` that is no mass on the axis of the tyre.
 pub fn check_campaign(about: &About, campaign: &Campaign) -> Result<(), InputError> {
     let file = ParameterFile::read(&campaign.manifest())?;
     let mut problems = unknown_facts(about, &file);
@@ -103,10 +103,10 @@ pub fn check_campaign(about: &About, campaign: &Campaign) -> Result<(), InputErr
     InputError::unless_empty(problems, Some(()))
 }
 
-/// The same for two models, of which each takes what it has: a name is wrong that neither of them knows.
+/// The same for two models: a name must be that of a parameter of one of them.
 ///
 /// # Errors
-/// As [`resolve`].
+/// Fails as [`resolve`] does.
 pub fn resolve_both<'a>(
     abouts: [&About; 2],
     paths: impl IntoIterator<Item = &'a Path> + Clone,
@@ -123,23 +123,23 @@ pub fn resolve_both<'a>(
     Ok([one(abouts[0], abouts[1])?, one(abouts[1], abouts[0])?])
 }
 
-/// What a file says beside the values of parameters.
+/// Contents of a parameter file besides the values.
 pub struct Beside {
-    /// The name of the model to which they were fitted.
+    /// Name of the model to which they were fitted.
     pub model: Option<String>,
-    /// Standard errors, where the file has them,
+    /// Standard errors, if the file has them.
     pub errors: BTreeMap<String, f64>,
-    /// and correlations of pairs.
+    /// Correlations of pairs.
     pub correlations: Vec<((String, String), f64)>,
-    /// Facts of the vehicle.
+    /// Vehicle data.
     pub vehicle: BTreeMap<String, f64>,
 }
 
 impl Beside {
-    /// Reads a file as [`resolve`] takes it.
+    /// Reads a parameter file.
     ///
     /// # Errors
-    /// A file that cannot be read or understood.
+    /// Fails if the file cannot be read.
     pub fn read(path: &Path) -> Result<Self, InputError> {
         let file = read(path)?;
         let errors = file.parameters.iter();
@@ -155,10 +155,10 @@ impl Beside {
     }
 }
 
-/// The distribution of what a fit has estimated, and the name of its model.
+/// The distribution of the estimates of a fit, and the name of its model.
 ///
 /// # Errors
-/// A file that cannot be read, that `qcar fit` has not written, or that no distribution follows from.
+/// Fails if the file cannot be read, is not the result of `qcar fit`, or gives no distribution.
 pub fn posterior(path: &Path) -> Result<(Posterior, String), InputError> {
     let answer = Answer::read(path)?;
     Ok((answer.posterior(path)?, answer.model))
@@ -180,12 +180,12 @@ fn read(path: &Path) -> Result<ParameterFile, InputError> {
     }
 }
 
-/// What a fit has written is JSON.
+/// The result of a fit is JSON.
 fn is_answer(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension == "json")
 }
 
-/// A sentence for each value `p` that lies beyond what the model takes for plausible: most often a matter of its unit.
+/// A sentence for each value `p` outside the plausible range of the model, most often because of its unit.
 pub fn out_of_range(about: &About, p: &[f64]) -> Vec<String> {
     let all = about.parameters.iter().zip(p);
     let beyond = all.filter_map(|(parameter, &value)| {
@@ -203,8 +203,8 @@ pub fn out_of_range(about: &About, p: &[f64]) -> Vec<String> {
     beyond.collect()
 }
 
-/// What a model brings along beside a campaign and leaves to an estimate: parameters with a default and a range that are
-/// not `known`, and of which the campaign says nothing.
+/// Parameters of the model that are estimated although the campaign does not mention them: those with a default and a
+/// range that are not `known`.
 pub fn own(about: &About, campaign: &Campaign) -> Vec<campaign::Parameter> {
     let is_given = |name: &str| campaign.parameter(name).is_some() || campaign.vehicle(name).is_some();
     let open = about.parameters.iter().filter(|own| !own.known && !is_given(&own.name));
@@ -222,11 +222,11 @@ pub fn own(about: &About, campaign: &Campaign) -> Vec<campaign::Parameter> {
     open.filter_map(parameter).collect()
 }
 
-/// Gives every parameter that is to be fitted and has no range that of the model.
+/// Gives every parameter to fit without a range that of the model.
 ///
 /// # Errors
-/// Where the model has none either, or one that does not hold the start value: an estimate needs bounds, and what the
-/// campaign wants fitted must not stay where it is without a word.
+/// Fails if the model has no range either, or if the start value is outside it. An estimate needs bounds, and a
+/// parameter to fit must not silently keep its start value.
 pub fn bound(parameters: &mut [campaign::Parameter], about: &About, campaign: &Campaign) -> Result<(), InputError> {
     let file = ParameterFile::read(&campaign.manifest())?;
     let mut problems = Vec::new();
@@ -255,10 +255,10 @@ pub fn bound(parameters: &mut [campaign::Parameter], about: &About, campaign: &C
     InputError::unless_empty(problems, Some(()))
 }
 
-/// What is computed from parameter values of the model called `model` is a number.
+/// Checks that constants computed from the parameter values of the model `model` are finite.
 ///
 /// # Errors
-/// Where it is not.
+/// Fails if one is not finite.
 pub fn require_finite<'a>(model: &str, mut computed: impl Iterator<Item = &'a f64>) -> Result<(), InputError> {
     match computed.find(|value| !value.is_finite()) {
         None => Ok(()),
@@ -271,10 +271,10 @@ pub fn require_finite<'a>(model: &str, mut computed: impl Iterator<Item = &'a f6
     }
 }
 
-/// The values that a file and settings give, whatever model they are for.
+/// The values of files and settings, for any model.
 ///
 /// # Errors
-/// A file that cannot be read or understood.
+/// Fails if a file cannot be read.
 pub fn given(path: Option<&Path>, settings: &[Setting]) -> Result<BTreeMap<String, f64>, InputError> {
     let mut values = BTreeMap::new();
     if let Some(path) = path {
@@ -286,7 +286,7 @@ pub fn given(path: Option<&Path>, settings: &[Setting]) -> Result<BTreeMap<Strin
     Ok(values)
 }
 
-/// A mistake at the place in the file where the parameter stands, or on the command line.
+/// A problem at the parameter in its file, or on the command line.
 fn problem(error: &ParameterError, file: &ParameterFile) -> Problem {
     let of_file = error.problem(&file.path);
     if let Some(stated) = file.parameters.get(error.name()) {

@@ -1,7 +1,7 @@
 //! Tables as Apache Parquet: numbers without gaps, plain and uncompressed, in groups of rows of one size.
 //!
-//! So the place of every number follows from the shape of the table. A table that was cut off while it grew is continued
-//! after its last whole group, which no general writer of the format does, since it keeps the places of its groups in memory.
+//! So the position of every number follows from the shape of the table, and an incomplete table can be continued after
+//! its last complete group. General writers cannot do that, since they keep the positions of the groups in memory.
 //! The format: <https://parquet.apache.org/docs/file-format/>.
 
 // The encoding of metadata (Thrift compact protocol).
@@ -13,35 +13,35 @@ use std::io::{self, Write};
 
 use records::page_header;
 
-/// Rows of a whole group.
+/// Rows of a complete group.
 pub const GROUP: u64 = 16_384;
 
-/// What a file begins and ends with.
+/// First and last bytes of a file.
 pub const MAGIC: &[u8; 4] = b"PAR1";
 
-/// The columns of a table, and what is said of it.
+/// The columns of a table and its metadata.
 pub struct Shape {
-    /// Names, each of a column of doubles.
+    /// Names of the columns, all of doubles.
     pub columns: Vec<String>,
-    /// A key and a text for those who ask the file what it is.
+    /// Key and text of the metadata.
     pub about: (String, String),
 }
 
 impl Shape {
-    /// Bytes of a group with so many rows.
+    /// Bytes of a group with this number of rows.
     pub fn group_length(&self, rows: u64) -> u64 {
         self.columns.len() as u64 * chunk_length(rows)
     }
 
-    /// Bytes of the beginning of a file and of its first groups, all of them whole.
+    /// Bytes of the beginning of a file with this number of complete groups.
     pub fn length(&self, groups: u64) -> u64 {
         MAGIC.len() as u64 + groups * self.group_length(GROUP)
     }
 
-    /// Writes a group: numbers row by row.
+    /// Writes a group, with the numbers row by row.
     ///
     /// # Errors
-    /// What the system says.
+    /// Fails with the error of the system.
     pub fn write_group(&self, rows: &[f64], out: &mut impl Write) -> io::Result<()> {
         let width = self.columns.len();
         let header = page_header((rows.len() / width) as u64);
@@ -54,10 +54,10 @@ impl Shape {
         Ok(())
     }
 
-    /// Writes the end of a file with so many rows.
+    /// Writes the end of a file with this number of rows.
     ///
     /// # Errors
-    /// What the system says.
+    /// Fails with the error of the system.
     pub fn write_end(&self, rows: u64, out: &mut impl Write) -> io::Result<()> {
         let record = records::of_file(self, rows);
         out.write_all(&record)?;

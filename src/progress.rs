@@ -1,25 +1,25 @@
-//! Progress on standard error of work that may take longer than a second: the task, and how far it is.
-//! They are seen on a terminal alone, never in a pipe or a file.
+//! Progress of work that may take longer than a second: the task and its completed part, on standard error. It is shown on
+//! a terminal only, never in a pipe or a file.
 
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use qcar_runtime::progress::Told;
+use qcar_runtime::progress::OnProgress;
 
 use crate::stopping::{self, Stop};
 
-/// What is shown now, so that an interruption can say what it ended.
+/// What is shown now, for the message of an interruption.
 static SHOWN: Mutex<Option<ProgressBar>> = Mutex::new(None);
 
-/// A sign of life whose words change, gone when it is dropped. Work that is to stop ends where it gives one.
+/// A progress line, which is removed when it is dropped. Cancelled work ends at its next report.
 pub struct Showing {
     bar: ProgressBar,
     stop: Option<Stop>,
 }
 
 impl Showing {
-    /// Says nothing yet.
+    /// An empty line.
     pub fn new() -> Self {
         let bar = ProgressBar::new_spinner().with_style(style("{spinner} {wide_msg} {elapsed}"));
         bar.enable_steady_tick(Duration::from_millis(100));
@@ -30,14 +30,14 @@ impl Showing {
         }
     }
 
-    /// Says what is being done.
-    pub fn tell(&self, what: String) {
+    /// Shows the current step.
+    pub fn step(&self, what: String) {
         stopping::here(self.stop.as_ref());
         self.bar.set_message(what);
     }
 
-    /// Says how much of it is done, and of how much.
-    pub fn far(&self, done: usize, of: usize) {
+    /// Shows the number of completed parts and of all parts.
+    pub fn count(&self, done: usize, of: usize) {
         stopping::here(self.stop.as_ref());
         self.bar.set_position(done as u64);
         if self.bar.length() != Some(of as u64) {
@@ -70,7 +70,7 @@ fn show(bar: Option<ProgressBar>) -> Option<ProgressBar> {
     std::mem::replace(&mut shown, bar)
 }
 
-/// Takes away what is shown, and gives its words.
+/// Removes the progress line from the terminal and returns its text.
 pub fn clear() -> Option<String> {
     let bar = show(None)?;
     let far = bar
@@ -80,9 +80,9 @@ pub fn clear() -> Option<String> {
     Some(bar.message() + &far)
 }
 
-/// Runs `work`, which tells how far it is, while a terminal shows it.
-pub fn while_counting<T>(what: String, work: impl FnOnce(Told<'_>) -> T) -> T {
+/// Runs `work` and shows its progress in a terminal.
+pub fn while_counting<T>(what: String, work: impl FnOnce(OnProgress<'_>) -> T) -> T {
     let showing = Showing::new();
-    showing.tell(what);
-    work(&|done, of| showing.far(done, of))
+    showing.step(what);
+    work(&|done, of| showing.count(done, of))
 }

@@ -1,4 +1,4 @@
-//! Roads as a user names them, with the speed at which they are driven over: `C@60km/h`, `belgian.crg#v=0.5@50km/h:20s`.
+//! Roads on the command line with their speed: `C@60km/h`, `belgian.crg#v=0.5@50km/h:20s`.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -10,15 +10,15 @@ use qcar_runtime::road::{Class, Road, RoadError};
 
 use crate::failure::flag;
 
-/// A random road of ISO 8608 or a measured profile, and how it is driven over.
+/// A random road of ISO 8608 or a measured profile, with speed and duration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Asked {
     ground: Ground,
-    /// m/s.
+    /// Speed, m/s.
     speed: f64,
-    /// s.
+    /// Duration, s.
     duration: Option<f64>,
-    /// The file that asks for it; none for the command line.
+    /// The file that names it; `None` for the command line.
     file: Option<PathBuf>,
 }
 
@@ -26,15 +26,15 @@ pub struct Asked {
 enum Ground {
     /// A class and the seed of its random numbers.
     Random(Class, u64),
-    /// A file and the channel of it that holds the heights.
+    /// A file and the name of its channel of heights.
     Measured(PathBuf, Option<String>),
 }
 
-/// What is expected.
+/// The expected form, for messages.
 pub const EXPECTED: &str = "a road and a speed: C@60km/h (class of ISO 8608), C#7@60km/h (its seed), road.crg#v=0.5@50km/h (file and channel), \
                             each perhaps with a duration such as :20s";
 
-/// The classes, in their order.
+/// The classes from A on.
 const CLASSES: [(&str, Class); 8] = [
     ("A", Class::A),
     ("B", Class::B),
@@ -46,14 +46,14 @@ const CLASSES: [(&str, Class); 8] = [
     ("H", Class::H),
 ];
 
-/// m/s: slower than a walk, faster than any car.
+/// Smallest and largest speed, m/s.
 const SPEEDS: std::ops::RangeInclusive<f64> = 0.5..=100.0;
-/// The shortest ride, s, of which a body swings about once; its spectrum has a line at each hertz.
+/// Shortest ride, s: about one oscillation of the body, with spectral lines at each hertz.
 const SHORTEST: f64 = 1.0;
-/// What a road must be, and what to do about one that is not.
+/// Requirement for a road, and remedy.
 const DRIVABLE: &str = "a road to drive over";
 const SAMPLED: &str = "give a road that is sampled finely enough and long enough";
-/// The longest ride, s: a road of ISO 8608 is a sum of sines, and a record has its place in memory.
+/// Longest ride, s: a road of ISO 8608 is a sum of sines, and a record is kept in memory.
 const LONGEST: f64 = 600.0;
 
 impl FromStr for Asked {
@@ -103,14 +103,14 @@ impl Ground {
                 *class,
                 choice.map_or(Some(SEED), |seed| seed.parse().ok())?,
             )),
-            // A single letter is meant for a class.
+            // A single letter is read as a class.
             None => (name.len() > 1).then(|| Ground::Measured(name.into(), choice.map(String::from))),
         }
     }
 }
 
 impl Asked {
-    /// The same as a file asks for it: the path of its profile is relative to the folder of that file.
+    /// The same in a file: the path of the profile is relative to the folder of that file.
     #[must_use]
     pub fn asked_in(mut self, file: &Path) -> Self {
         if let Ground::Measured(profile, _) = &mut self.ground {
@@ -120,7 +120,7 @@ impl Asked {
         self
     }
 
-    /// What is wrong with it, where it is asked for.
+    /// A problem at the place where the road is named.
     fn problem(&self, found: String, expected: &str, remedy: &str) -> Problem {
         match &self.file {
             None => flag("road", found, expected, remedy),
@@ -128,10 +128,10 @@ impl Asked {
         }
     }
 
-    /// The road itself.
+    /// The road.
     ///
     /// # Errors
-    /// A file that cannot be read or makes no road, a road that is shorter or longer than a ride may be.
+    /// Fails if a file cannot be read or is no road, or if the ride is too short or too long.
     pub fn course(&self) -> Result<Course, InputError> {
         match &self.ground {
             Ground::Random(class, seed) => {
@@ -165,10 +165,10 @@ impl Asked {
     }
 }
 
-/// The roads, each of which has a name that no other has, nor anything that is driven over `beside` them.
+/// The roads, each with a name that differs from all others and from the courses `beside` them.
 ///
 /// # Errors
-/// As [`Asked::course`], and two of one name.
+/// Fails as [`Asked::course`] does, or if two have one name.
 pub fn courses(roads: &[Asked], beside: &[Course]) -> Result<Vec<Course>, InputError> {
     let mut courses: Vec<Course> = Vec::new();
     for road in roads {
@@ -187,7 +187,7 @@ fn no_road(file: &Path, error: &RoadError) -> InputError {
     Problem::new(file, Place::File, error.to_string(), DRIVABLE, SAMPLED).into()
 }
 
-/// A name that may be part of that of a file.
+/// A name that may be part of a file name.
 fn plain(name: &str) -> String {
     let is_plain = |c: &char| c.is_alphanumeric() || "-_=.+".contains(*c);
     name.chars().map(|c| if is_plain(&c) { c } else { '_' }).collect()

@@ -1,8 +1,8 @@
-//! Amplitudes of the parts of a model in a campaign, computed by the model without any effect:
-//! what the ranges of effects are measured by.
+//! Amplitudes of the parts of a model in a campaign, computed with the model without effects. The ranges of effects are
+//! relative to them.
 //!
-//! Sweeps count by their measured amplitude, line by line, other records by the RMS value of what drove them, and both
-//! by the linear response of the model at rest. A force that was measured on a link stands for itself.
+//! A sweep counts with its measured amplitude, line by line; any other record with the RMS of its input. The amplitudes
+//! follow from the linear response of the model about rest. A measured force of a link is used directly.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -20,21 +20,21 @@ use qcar_runtime::response::ratio::ratio;
 use qcar_runtime::spectrum::transform;
 use qcar_runtime::transmissibility::Point;
 
-/// Frequencies at which a record is evaluated: thirds of an octave are coarse for a resonance, but a scale is no more than
-/// an order of magnitude.
+/// Frequencies at which a record is evaluated. Thirds of an octave are coarse for a resonance, but only the order of
+/// magnitude matters.
 const BANDS_PER_OCTAVE: f64 = 3.0;
 
-/// What drove a run, as amplitudes of a sensor at frequencies (Hz).
+/// Excitation of a run, as amplitudes of a sensor at frequencies (Hz).
 struct Driven<'a> {
     reference: &'a Point,
     frequency: Vec<f64>,
     amplitude: Vec<f64>,
-    /// True where the amplitudes act at once, false where they do one after the other.
+    /// True if the amplitudes act at once, false if one after the other.
     at_once: bool,
 }
 
-/// The largest amplitude of each part in the runs that are fitted, by the name of its reference value. Parts that do not
-/// move, and all parts where the model lacks a value, have none.
+/// Largest amplitude of each part in the fitted runs, by the name of its reference value. Parts without motion are left
+/// out, and so are all parts if the model lacks a value.
 pub fn scales(model: &Checked, values: &BTreeMap<String, f64>, evidence: &Evidence) -> BTreeMap<String, f64> {
     let Ok(shown) = watched(model) else {
         return BTreeMap::new();
@@ -87,7 +87,7 @@ fn driven(run: &Run) -> Vec<Driven<'_>> {
     }
 }
 
-/// The amplitude that a record has in each band of frequency.
+/// Amplitude of a record in each frequency band.
 fn recorded<'a>(reference: &'a Point, samples: &[f64], rate: f64) -> Driven<'a> {
     let lines = transform(samples);
     let (length, spacing) = (samples.len() as f64, rate / samples.len() as f64);
@@ -107,7 +107,7 @@ fn recorded<'a>(reference: &'a Point, samples: &[f64], rate: f64) -> Driven<'a> 
     }
 }
 
-/// Every signal of which a part has reference values.
+/// Every signal of a part with reference values.
 fn parts(about: &About) -> Vec<Signal> {
     let shown = about.outputs.iter().map(|output| output.signal.clone());
     let mut parts: Vec<Signal> = Vec::new();
@@ -123,7 +123,7 @@ fn parts(about: &About) -> Vec<Signal> {
     parts
 }
 
-/// The reference values that a signal shows, each as often differentiated or integrated as it needs.
+/// Reference values of a signal, differentiated or integrated as needed.
 fn orders(kind: SignalKind) -> &'static [(Scale, i32)] {
     match kind {
         SignalKind::Force => &[(Scale::Force, 0)],
@@ -156,7 +156,7 @@ fn amplitudes(model: &Evaluator, values: &Values, driven: &Driven, signal: &Sign
     orders(signal.kind).iter().map(of_order).collect()
 }
 
-/// What a sensor shows of the inputs: the one that it stands on, or the only one along its axis.
+/// The input that a sensor measures: that at its own place, or the only one along its axis.
 fn excitation(about: &About, reference: &Point) -> Option<usize> {
     let along = |own: &Excitation| own.axis == reference.axis.name();
     let own = about
@@ -172,7 +172,7 @@ fn excitation(about: &About, reference: &Point) -> Option<usize> {
     })
 }
 
-/// Forces that sensors read on links.
+/// Measured forces of links.
 fn measured(about: &About, evidence: &Evidence) -> BTreeMap<String, f64> {
     let mut found = BTreeMap::new();
     for (_, series) in evidence.of_role(Role::Fit) {

@@ -1,19 +1,19 @@
-//! Workbooks of Excel as they are written: the same bytes for the same content.
+//! Workbooks of Excel; equal content gives equal bytes.
 
 use std::path::Path;
 
 use qcar_runtime::error::{InputError, Place, Problem};
 use rust_xlsxwriter::{Color, DocProperties, ExcelDateTime, Format, FormatBorder, Workbook, Worksheet, XlsxError};
 
-/// Formats of cells.
+/// Cell formats.
 pub struct CellFormats {
-    /// Over a sheet.
+    /// Title of a sheet.
     pub title: Format,
-    /// Over a column or a group of rows.
+    /// Heading of a column or of a group of rows.
     pub heading: Format,
-    /// What is for reading.
+    /// Cell to read.
     pub plain: Format,
-    /// What is to be filled in.
+    /// Cell to fill in.
     pub input: Format,
 }
 
@@ -34,19 +34,19 @@ impl Default for CellFormats {
 /// An empty workbook.
 ///
 /// # Errors
-/// None that a user could see.
+/// Fails only for invalid formats of this module.
 pub fn workbook() -> Result<Workbook, XlsxError> {
     let mut workbook = Workbook::new();
-    // The time would make other bytes of the same content.
+    // The current time would change the bytes.
     let properties = DocProperties::new().set_creation_datetime(&ExcelDateTime::from_ymd(2000, 1, 1)?);
     workbook.set_properties(&properties);
     Ok(workbook)
 }
 
-/// The bytes of a workbook that `fill` has filled, to be written as `file`.
+/// The bytes of a workbook that `fill` has filled, for the file `file`.
 ///
 /// # Errors
-/// What Excel could not hold: too many rows, or a name that it does not take.
+/// Fails if Excel cannot hold the content: too many rows, or an invalid name.
 pub fn filled(file: &Path, fill: impl FnOnce(&mut Workbook) -> Result<(), XlsxError>) -> Result<Vec<u8>, InputError> {
     let bytes = workbook().and_then(|mut workbook| {
         fill(&mut workbook)?;
@@ -61,11 +61,11 @@ pub fn filled(file: &Path, fill: impl FnOnce(&mut Workbook) -> Result<(), XlsxEr
     })
 }
 
-/// What a cell of a table holds.
+/// Content of a cell.
 pub enum Cell {
-    /// A word.
+    /// Text.
     Text(String),
-    /// A number, as it is shown; an empty cell where there is none.
+    /// A number as it is shown; `None` for an empty cell.
     Number(Option<f64>),
 }
 
@@ -81,10 +81,10 @@ impl From<f64> for Cell {
     }
 }
 
-/// Adds a sheet with a table whose headings stay in sight.
+/// Adds a sheet with a table whose headings stay visible.
 ///
 /// # Errors
-/// More rows than a sheet has.
+/// Fails if the table has more rows than a sheet.
 pub fn table<'a>(
     workbook: &'a mut Workbook,
     name: &str,

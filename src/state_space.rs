@@ -1,4 +1,4 @@
-//! The state-space form of a model for one parameter set, dense and named, for people and for JSON.
+//! The state-space form of a model for one parameter set, dense and with names.
 //!
 //! A nonlinear model is linearised at rest: all states and inputs zero.
 
@@ -17,9 +17,9 @@ pub type Rows = Vec<Vec<f64>>;
 /// A, B, C and D with their parameter Jacobians, and the names of rows and columns.
 #[derive(Debug, Serialize)]
 pub struct StateSpace {
-    /// The model's name.
+    /// Name of the model.
     pub model: String,
-    /// True where the matrices hold for any state, false where they are a linearisation at rest.
+    /// True if the matrices hold for any state; false for a linearisation at rest.
     pub linear: bool,
     /// Rows and columns of A, rows of B, columns of C.
     pub states: Vec<StateName>,
@@ -27,32 +27,32 @@ pub struct StateSpace {
     pub inputs: Vec<InputName>,
     /// Rows of C and D.
     pub outputs: Vec<OutputName>,
-    /// Every parameter but those that take their value from another one, in the order of the model.
+    /// Every parameter that is not tied to another, in the order of the model.
     pub parameters: Vec<String>,
     /// The value of every parameter, SI.
     pub values: BTreeMap<String, f64>,
-    /// A, B, C, D.
+    /// A, B, C and D.
     #[serde(flatten)]
     pub matrices: BTreeMap<String, Rows>,
-    /// dA, dB, dC, dD: the matrix of derivatives for each parameter.
+    /// dA, dB, dC and dD: a matrix of derivatives for each parameter.
     #[serde(flatten)]
     pub sensitivities: BTreeMap<String, BTreeMap<String, Rows>>,
 }
 
-/// A state: `mass` for what moves, `link` for an inner state.
+/// A state: with `mass` for a motion, with `link` for an inner state.
 #[derive(Debug, Serialize)]
 pub struct StateName {
-    /// As in equations.
+    /// Name in equations.
     pub name: String,
-    /// The mass or node that moves.
+    /// The moving mass or node.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mass: Option<String>,
-    /// The link whose inner state it is.
+    /// The link of an inner state.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub link: Option<String>,
-    /// `z`, `x`.
+    /// Axis: `z` or `x`.
     pub axis: String,
-    /// `position`, `velocity` or `inner`.
+    /// Kind: `position`, `velocity` or `inner`.
     pub kind: &'static str,
     /// Unit.
     pub unit: String,
@@ -63,11 +63,11 @@ pub struct StateName {
 pub struct InputName {
     /// The road, motion, force or gravity.
     pub name: String,
-    /// As in equations.
+    /// Name in equations.
     pub variable: String,
-    /// `z`, `x`.
+    /// Axis: `z` or `x`.
     pub axis: String,
-    /// `road`, `road_rate`, `road_acceleration`, the same of `motion`, `force` or `gravity`.
+    /// Kind: `road`, `road_rate`, `road_acceleration`, the same of `motion`, `force` or `gravity`.
     pub kind: &'static str,
     /// Unit.
     pub unit: String,
@@ -76,13 +76,13 @@ pub struct InputName {
 /// An output.
 #[derive(Debug, Serialize)]
 pub struct OutputName {
-    /// As declared.
+    /// Name as declared.
     pub name: String,
     /// The mass, node or link that is measured.
     pub location: String,
-    /// `z`, `x`.
+    /// Axis: `z` or `x`.
     pub axis: String,
-    /// `position`, `velocity`, `acceleration`, `force` or `stretch`.
+    /// Kind: `position`, `velocity`, `acceleration`, `force` or `stretch`.
     pub kind: &'static str,
     /// Unit.
     pub unit: String,
@@ -112,7 +112,7 @@ pub fn state_space(model: &dyn Model, values: &Values, axis: Option<&str>) -> St
     }
 }
 
-/// The places of the states, inputs and outputs that are shown.
+/// Positions of the states, inputs and outputs that are shown.
 struct Kept {
     states: Vec<usize>,
     inputs: Vec<usize>,
@@ -149,7 +149,7 @@ impl Kept {
         vec![vec![0.0; columns.len()]; rows.len()]
     }
 
-    /// Where an entry of the whole matrix is among what is shown.
+    /// Position of an entry of the whole matrix in the part that is shown.
     fn place(&self, matrix: Matrix, row: u16, column: u16) -> Option<(usize, usize)> {
         let (rows, columns) = self.rows_and_columns(matrix);
         Some((
@@ -181,7 +181,7 @@ fn matrices(model: &dyn Model, p: &[f64], keep: &Kept) -> BTreeMap<String, Rows>
     BTreeMap::from(dense)
 }
 
-/// The derivative by a parameter includes what it moves through those that take their value from it.
+/// The derivative by a parameter includes the parameters that are tied to it.
 fn sensitivities(model: &dyn Model, values: &Values, keep: &Kept) -> BTreeMap<String, BTreeMap<String, Rows>> {
     let about = model.about();
     let nonzeros = sensitivities_at_rest(model, values.as_slice());
@@ -203,7 +203,7 @@ fn sensitivities(model: &dyn Model, values: &Values, keep: &Kept) -> BTreeMap<St
     BTreeMap::from(dense)
 }
 
-/// A state in the words of JSON.
+/// A state for JSON.
 pub fn state_name(state: &State) -> StateName {
     let location = Some(state.location.to_string());
     let (mass, link, kind) = match state.kind {
@@ -221,7 +221,7 @@ pub fn state_name(state: &State) -> StateName {
     }
 }
 
-/// An input in the same words.
+/// An input for JSON.
 pub fn input_name(about: &About, input: &Input) -> InputName {
     let (name, kind) = match input.kind {
         InputKind::Gravity => (&input.name, "gravity"),
@@ -251,7 +251,7 @@ fn motion_kind(road: bool, quantity: Quantity) -> &'static str {
     }
 }
 
-/// An output in the same words.
+/// An output for JSON.
 pub fn output_name(output: &Output) -> OutputName {
     let Signal { location, axis, kind } = &output.signal;
     let kind = match kind {

@@ -1,23 +1,23 @@
-//! Work that whoever asked for it may give up. A program that qcar is a part of, such as Python, does not end when its user presses
-//! Ctrl-C; so the work ends, at its next sign of life.
+//! Cancellation of work. A program that contains qcar, such as Python, does not end when its user presses Ctrl-C, so
+//! the work ends at its next progress report.
 
 use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Whether work is to stop.
+/// Flag that cancels work.
 pub type Stop = Arc<AtomicBool>;
 
-/// What unwinds work that was stopped.
+/// Panic payload that unwinds cancelled work.
 struct Stopped;
 
 thread_local! {
-    /// That of the work that this thread is doing.
+    /// Flag of the work of this thread.
     static STOP: RefCell<Option<Stop>> = const { RefCell::new(None) };
 }
 
-/// Does `work` unless `stop` is set on the way: `None` then.
+/// Runs `work`; `None` if `stop` was set meanwhile.
 pub fn unless<T>(stop: &Stop, work: impl FnOnce() -> T) -> Option<T> {
     let outer = STOP.replace(Some(Arc::clone(stop)));
     let done = catch_unwind(AssertUnwindSafe(work));
@@ -29,12 +29,12 @@ pub fn unless<T>(stop: &Stop, work: impl FnOnce() -> T) -> Option<T> {
     }
 }
 
-/// Whether the work of this thread is to stop, for threads that help it; `None` if nothing can stop it.
+/// The flag of the work of this thread, for threads that help it; `None` if it cannot be cancelled.
 pub fn of_this_work() -> Option<Stop> {
     STOP.with_borrow(Clone::clone)
 }
 
-/// Ends the work here if it is to stop.
+/// Ends the work here if it is cancelled.
 pub fn here(stop: Option<&Stop>) {
     if stop.is_some_and(|stop| stop.load(Ordering::Relaxed)) {
         resume_unwind(Box::new(Stopped));

@@ -1,10 +1,10 @@
-//! Tables and numbers as text for people.
+//! Tables and numbers as text.
 
 use std::iter::repeat_n;
 
 use crate::terminal;
 
-// Tables that are wider than the terminal.
+// Tables wider than the terminal.
 mod narrow;
 
 /// Rows under a heading, columns aligned: text to the left, numbers to the right.
@@ -62,13 +62,13 @@ impl Table {
     }
 }
 
-/// The width of a column, and whether it holds numbers.
+/// Width of a column, and true if it contains numbers.
 type Shape = (usize, bool);
 
-/// Between two columns.
+/// Space between two columns.
 const SPACE: &str = "  ";
 
-/// Rows below each other, of which the first `head` are headings.
+/// Lines of a table, of which the first `head` are headings.
 fn lines(rows: &[Vec<String>], shapes: &[Shape], head: usize) -> String {
     let lines = rows.iter().map(|row| line(row, shapes)).enumerate();
     let styled = lines.map(|(at, line)| if at < head { terminal::heading(&line) } else { line });
@@ -90,7 +90,7 @@ fn line(row: &[String], shapes: &[Shape]) -> String {
     line
 }
 
-/// A number with so many significant digits, plain where that is short, and without trailing zeros.
+/// A number with this number of significant digits, without exponent if that is short, and without trailing zeros.
 pub fn number(value: f64, digits: usize) -> String {
     if value == 0.0 {
         return "0".into();
@@ -109,17 +109,17 @@ pub fn number(value: f64, digits: usize) -> String {
     }
 }
 
-/// The same, or a dash where there is no number.
+/// The same, or a dash for `None`.
 pub fn or_dash(value: Option<f64>, digits: usize) -> String {
     value.map_or("-".into(), |value| number(value, digits))
 }
 
-/// What is odd, a line for each sentence.
+/// Notices, one per line.
 pub fn noted(of: &[String]) -> String {
     of.iter().map(|notice| format!("note: {notice}\n")).collect()
 }
 
-/// So many of something, in the plural where there is not just one.
+/// A count with its noun, in the plural unless it is 1.
 pub fn counted(count: usize, what: &str) -> String {
     let ending = if count == 1 { "" } else { "s" };
     format!("{count} {what}{ending}")

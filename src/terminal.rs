@@ -1,5 +1,5 @@
-//! What a terminal can show: how wide it is, and whether in colour. A pipe or a file gets lines as long as they are, without
-//! colour, unless the environment variable COLUMNS or --color says otherwise.
+//! Width and colours of the terminal. In a pipe or a file, lines are not broken and have no colour, unless the
+//! environment variable COLUMNS or --color says otherwise.
 
 use std::env;
 use std::io::IsTerminal;
@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 use clap::ValueEnum;
 use console::Term;
 
-/// When results and errors are coloured.
+/// Choice of colours for results and errors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Color {
     /// On a terminal, unless the environment variable NO_COLOR is set
@@ -20,10 +20,10 @@ pub enum Color {
     Never,
 }
 
-/// Where text goes.
+/// Properties of an output stream.
 #[derive(Clone, Copy, Default)]
 struct Outlet {
-    /// Columns, where there is a limit.
+    /// Number of columns; `None` without a limit.
     width: Option<usize>,
     colored: bool,
 }
@@ -58,7 +58,7 @@ impl Outlet {
         }
     }
 
-    /// Long lines broken between words, further ones indented. What is drawn stays as it is.
+    /// Breaks long lines between words and indents the further ones. Drawings are unchanged.
     fn wrapped(self, text: &str) -> String {
         let Some(width) = self.width else {
             return text.into();
@@ -75,21 +75,21 @@ impl Outlet {
     }
 }
 
-/// What lines of diagnostics are drawn with.
+/// First characters of the drawn lines of diagnostics.
 const DRAWN: [char; 4] = ['│', '╭', '╰', '┬'];
-/// What is narrower is no width that anybody reads tables in.
+/// Smallest width.
 const NARROWEST: usize = 40;
-/// What further lines of a paragraph begin with.
+/// Indent of the further lines of a paragraph.
 const INDENT: &str = "  ";
 
 const BOLD: &str = "1";
 const RED: &str = "31";
 const YELLOW: &str = "33";
 
-/// Standard output and standard error; without a terminal, a library writes as for files.
+/// Standard output and standard error; a library without a terminal writes as for files.
 static OUTLETS: OnceLock<[Outlet; 2]> = OnceLock::new();
 
-/// Finds out how wide each outlet is and whether it has colours. The first call in a process decides.
+/// Determines width and colours of each stream. The first call in a process decides.
 pub fn detect(color: Color) {
     let out = Outlet::of(std::io::stdout().is_terminal(), &Term::stdout(), color);
     let error = Outlet::of(std::io::stderr().is_terminal(), &Term::stderr(), color);
@@ -100,17 +100,17 @@ fn outlets() -> [Outlet; 2] {
     OUTLETS.get().copied().unwrap_or_default()
 }
 
-/// Columns that lines of standard output may have, where there is a limit.
+/// Number of columns of standard output; `None` without a limit.
 pub fn width() -> Option<usize> {
     outlets()[0].width
 }
 
-/// The head of a table.
+/// Heading of a table.
 pub fn heading(text: &str) -> String {
     outlets()[0].styled(BOLD, text)
 }
 
-/// Sentences and tables for standard output: long sentences broken, notes marked.
+/// Sentences and tables for standard output: long sentences are broken, and notices are marked.
 pub fn prose(text: &str) -> String {
     let out = outlets()[0];
     let text = out.wrapped(text);
@@ -120,7 +120,7 @@ pub fn prose(text: &str) -> String {
     }
 }
 
-/// What is wrong, for standard error: of each line the place is marked.
+/// An error for standard error; the place at the start of each line is marked.
 pub fn complaint(text: &str) -> String {
     let error = outlets()[1];
     let marked = |line: &str| match line.split_once(": found ") {
@@ -133,7 +133,7 @@ pub fn complaint(text: &str) -> String {
     wrapped.split_inclusive('\n').map(marked).collect()
 }
 
-/// A line in pieces of at most so many characters, where there are spaces to break it.
+/// A line in pieces of at most this number of characters, broken at spaces.
 fn broken(line: &str, width: usize) -> String {
     let text = line.trim_end_matches('\n');
     let own_indent = &text[..text.len() - text.trim_start().len()];

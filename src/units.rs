@@ -1,4 +1,4 @@
-//! The units in which results are shown. Inside, and in JSON, all is SI.
+//! The units in which results are shown. Values inside and in JSON are in SI.
 
 use std::str::FromStr;
 use std::sync::OnceLock;
@@ -6,14 +6,14 @@ use std::sync::OnceLock;
 use qcar_runtime::campaign::Declared;
 use serde_json::json;
 
-/// What `engineering` stands for: a unit for each kind that engineers of ride comfort do not show in SI.
+/// Units of the choice `engineering`: one for each kind that engineers of ride comfort do not show in SI.
 const ENGINEERING: [&str; 5] = ["N/mm", "N s/mm", "mm", "mm/s", "g"];
 
 /// A unit for each kind of quantity that is not shown in SI.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Units(Vec<Shown>);
 
-/// A unit that is shown, and what it is in SI.
+/// A shown unit, and its value in SI.
 #[derive(Clone, Debug, PartialEq)]
 struct Shown {
     name: String,
@@ -57,7 +57,7 @@ impl Units {
         self.0.iter().find(|own| own.declared.is_like(si))
     }
 
-    /// What makes a page know these units and open in them.
+    /// Script that passes these units to a page.
     fn script(&self) -> String {
         if self.0.is_empty() {
             return "view.units = 'si';".into();
@@ -77,36 +77,36 @@ impl Units {
         )
     }
 
-    /// The unit in which what is `si` inside is shown.
+    /// The shown unit of a value in the unit `si`.
     pub fn name<'a>(&'a self, si: &'a str) -> &'a str {
         self.of_kind(si).map_or(si, |own| &own.name)
     }
 
-    /// A value in that unit.
+    /// A value in the shown unit.
     pub fn value(&self, value: f64, si: &str) -> f64 {
         self.of_kind(si).map_or(value, |own| own.declared.shown(value))
     }
 }
 
-/// The user's choice.
+/// Choice of the user.
 static CHOSEN: OnceLock<Units> = OnceLock::new();
 
-/// Shows everything from now on in these units. The first choice of a process holds.
+/// Sets the units of all results. The first choice of a process holds.
 pub fn choose(units: Units) {
     let _ = CHOSEN.set(units);
 }
 
-/// The unit in which a value in `si` is shown: SI without a choice.
+/// The shown unit of a value in `si`: SI without a choice.
 pub fn name(si: &str) -> &str {
     CHOSEN.get().map_or(si, |units| units.name(si))
 }
 
-/// A value in SI as it is shown.
+/// A value in SI, converted to the shown unit.
 pub fn value(value: f64, si: &str) -> f64 {
     CHOSEN.get().map_or(value, |units| units.value(value, si))
 }
 
-/// What is shown, with its unit after it; of a pure number without.
+/// A text with its shown unit; a pure number has none.
 pub fn with_unit(shown: &str, si: &str) -> String {
     match name(si) {
         "1" | "" => shown.into(),
@@ -114,12 +114,12 @@ pub fn with_unit(shown: &str, si: &str) -> String {
     }
 }
 
-/// A script with which a page opens in the chosen units; empty without a choice, when the page uses its own.
+/// A script that opens a page in the chosen units; empty without a choice, so that the page uses its own.
 pub fn script() -> String {
     CHOSEN.get().map_or(String::new(), Units::script)
 }
 
-/// What a column holds, and after it in brackets its unit; of a pure number no unit.
+/// A column heading with its shown unit in brackets; a pure number has none.
 pub fn heading(what: &str, si: &str) -> String {
     match name(si) {
         "1" | "" => what.into(),

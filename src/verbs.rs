@@ -1,4 +1,4 @@
-//! One file per verb: its flags, and what it does with them. A verb returns the text for standard output.
+//! One file per verb: its flags and its work. A verb returns the text for standard output.
 
 use std::path::PathBuf;
 
@@ -69,7 +69,7 @@ pub struct ModelArguments {
     set: Vec<Setting>,
 }
 
-/// What is named, each once, in the order of the first.
+/// Names without duplicates, in the order of their first use.
 pub(crate) fn each_once<T: PartialEq>(named: impl IntoIterator<Item = T>) -> Vec<T> {
     let mut once: Vec<T> = Vec::new();
     for own in named {
@@ -80,14 +80,14 @@ pub(crate) fn each_once<T: PartialEq>(named: impl IntoIterator<Item = T>) -> Vec
     once
 }
 
-/// How a result is printed.
+/// Output format of a result.
 #[derive(Clone, Copy, ValueEnum)]
 pub(crate) enum Format {
     Text,
     Json,
 }
 
-/// How a result that is one table is printed.
+/// Output format of a result that is one table.
 #[derive(Clone, Copy, ValueEnum)]
 pub(crate) enum TableFormat {
     Text,

@@ -21,7 +21,7 @@ use crate::failure::Failure;
 use crate::scales::scales;
 use crate::{catalogue, effects};
 
-/// Parameters with their ranges as a search takes them.
+/// Parameters with their ranges, as the setting of a search.
 pub fn given(parameters: &[Parameter], campaign: &Campaign) -> Setting {
     let given = parameters.iter().map(|p| Given {
         range: p.range.filter(|_| p.fit),
@@ -34,7 +34,7 @@ pub fn given(parameters: &[Parameter], campaign: &Campaign) -> Setting {
     }
 }
 
-/// A model on the bench, and the catalogue beside it.
+/// A model, and the catalogue of effects.
 #[derive(Clone)]
 pub struct Bench {
     model: Checked,
@@ -46,12 +46,12 @@ pub struct Bench {
 }
 
 impl Bench {
-    /// Puts a model on the bench. Starts and ranges of effects that depend on it are taken at `values`.
+    /// A bench for a model. Starts and ranges of effects that depend on parameters are computed at `values`.
     pub fn new(model: Checked, catalogue: Arc<Catalogue>, values: Arc<BTreeMap<String, f64>>) -> Self {
         Self::beside(model, catalogue, values, Arc::default())
     }
 
-    /// The same beside dynamometers, for links by axis and name.
+    /// A bench with further models for the links measured alone, by axis and name.
     fn beside(
         model: Checked,
         catalogue: Arc<Catalogue>,
@@ -67,7 +67,7 @@ impl Bench {
         }
     }
 
-    /// The same beside a dynamometer for each of its links.
+    /// The same with a model for each link alone.
     pub fn with_every_link_alone(self) -> Self {
         let links = self.model.links.iter();
         let all = links
@@ -76,10 +76,10 @@ impl Bench {
         Self::beside(self.model, self.catalogue, self.values, Arc::new(all))
     }
 
-    /// The model of a campaign, or another, beside the shipped catalogue.
+    /// The model of a campaign, or another, with the shipped catalogue.
     ///
     /// # Errors
-    /// A model that cannot be read, or that the compiler refuses.
+    /// Fails if the model cannot be read or does not compile.
     pub fn of_campaign(campaign: &Campaign, model: Option<&str>) -> Result<Self, Failure> {
         let compiled = catalogue::compiled_of_campaign(campaign, model)?;
         let vehicle = campaign.vehicle.iter().cloned();
@@ -91,7 +91,7 @@ impl Bench {
         Ok(Self::beside(compiled.model, catalogue, Arc::new(values), alone))
     }
 
-    /// The same with what the ranges of effects are measured by in a campaign.
+    /// The same with the amplitudes of a campaign, on which ranges of effects depend.
     pub fn measured(&self, evidence: &Evidence) -> Self {
         let mut values = scales(&self.model, &self.values, evidence);
         values.extend(self.values.iter().map(|(name, value)| (name.clone(), *value)));
@@ -101,12 +101,12 @@ impl Bench {
         }
     }
 
-    /// The model as it lies there.
+    /// The model.
     pub fn checked(&self) -> &Checked {
         &self.model
     }
 
-    /// Another model beside the same catalogue.
+    /// Another model with the same catalogue.
     pub fn holding(&self, model: Checked) -> Self {
         let (catalogue, values) = (Arc::clone(&self.catalogue), Arc::clone(&self.values));
         Self::beside(model, catalogue, values, Arc::clone(&self.alone))
@@ -130,7 +130,8 @@ impl Bench {
         patched.flat_map_iter(of_patch).collect()
     }
 
-    /// What the search needs of a patched model. A location that has the name alone stands for its sensors of all axes too.
+    /// The candidates of a patched model. A location that is given without an axis also stands for its sensors of all
+    /// axes.
     fn candidates_at(&self, patched: Patched, nuisance: bool) -> Vec<Candidate> {
         let Some(signal) = patched.signals.first() else {
             return vec![Candidate {
@@ -174,7 +175,7 @@ impl Bench {
         axes.into_iter().filter_map(sensor).collect()
     }
 
-    /// The model with an effect in it, in one of its forms where it has several; `None` where that does not apply.
+    /// The model with an effect added, in one of its forms; `None` if the effect does not apply.
     pub fn patched(&self, effect: &str, at: &str, form: Option<&str>) -> Option<Patched> {
         let patch = self.patch(effect)?;
         let chosen = form.and_then(|form| patch.in_form(form));
@@ -211,7 +212,7 @@ impl Workshop for Bench {
     }
 }
 
-/// A model that runs, and so do its links that are measured alone.
+/// The runnable model, with models of its links that are measured alone.
 fn run(model: &Checked, alone: &[(String, String)]) -> Machine {
     let whole = Machine::new(&derive(model.clone()));
     let derived = |(axis, link): &(String, String)| derive_alone(model, axis, link);
@@ -221,7 +222,7 @@ fn run(model: &Checked, alone: &[(String, String)]) -> Machine {
     })
 }
 
-/// The links that a campaign has measured alone, each once.
+/// The links that a campaign has measured alone, without duplicates.
 fn alone(campaign: &Campaign) -> Vec<(String, String)> {
     let mut links: Vec<(String, String)> = Vec::new();
     for run in &campaign.runs {
@@ -235,8 +236,8 @@ fn alone(campaign: &Campaign) -> Vec<(String, String)> {
     links
 }
 
-/// Without the forms that come to the same in this model as one before them: past a strut on the upright, friction is
-/// friction between wheel and body.
+/// Removes forms that are equivalent to an earlier one in this model: on a strut that is fixed to the upright, friction
+/// of the damper is friction between wheel and body.
 fn told_apart(patched: Vec<Patched>) -> Vec<Patched> {
     let mut apart: Vec<Patched> = Vec::new();
     for own in patched {

@@ -3,7 +3,7 @@
 use qcar::catalogue::load;
 use qcar_runtime::campaign::{Campaign, Role};
 use qcar_runtime::discover::observe::{Prediction, Stimulus, predict};
-use qcar_runtime::discover::{Evidence, Free, Gap, Refit, refit};
+use qcar_runtime::discover::{Evidence, Free, Misfit, Refit, refit};
 use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;
 use std::path::{Path, PathBuf};
@@ -18,7 +18,7 @@ fn campaign(name: &str) -> Campaign {
 }
 
 /// Refits what the campaign fits, and `extra` parameters with their start and bounds.
-fn fitted(campaign: &Campaign, model: &dyn Model, extra: &[(&str, f64, f64, f64)]) -> (Refit, Gap) {
+fn fitted(campaign: &Campaign, model: &dyn Model, extra: &[(&str, f64, f64, f64)]) -> (Refit, Misfit) {
     let about = model.about();
     let place = |name: &str| {
         about
@@ -44,8 +44,8 @@ fn fitted(campaign: &Campaign, model: &dyn Model, extra: &[(&str, f64, f64, f64)
         })
         .collect();
     let refit = refit(model, &values, &free, &evidence).expect("the model has the sensors");
-    let gap = Gap::of(model, &refit, &evidence).expect("the model has the sensors");
-    (refit, gap)
+    let misfit = Misfit::of(model, &refit, &evidence).expect("the model has the sensors");
+    (refit, misfit)
 }
 
 /// The shipped model with a term added to the force of its only link.

@@ -6,7 +6,7 @@ use qcar_runtime::error::InputError;
 use qcar_runtime::fit::report::{NoError, ParameterFit};
 use qcar_runtime::fit::{Fit, Plan, Setup, measure};
 use qcar_runtime::model::Model;
-use qcar_runtime::progress::UNTOLD;
+use qcar_runtime::progress::NO_PROGRESS;
 use std::path::{Path, PathBuf};
 
 fn folder(name: &str) -> PathBuf {
@@ -22,7 +22,7 @@ fn model(name: &str) -> &'static dyn Model {
 fn fit(campaign: &str, axle: &str, wanted: Option<&[String]>) -> Result<Fit, InputError> {
     let campaign = Campaign::open(folder(campaign))?;
     let plan = Plan::new(&campaign);
-    let levels = measure::levels(&campaign, model(axle).about(), wanted, &Default::default(), UNTOLD)?;
+    let levels = measure::levels(&campaign, model(axle).about(), wanted, &Default::default(), NO_PROGRESS)?;
     Ok(Setup::new(model(axle), &plan, &levels)?.fit())
 }
 

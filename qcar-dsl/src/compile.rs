@@ -15,7 +15,7 @@ use crate::source::{Load, Source};
 /// Reads and checks a model file, with all its diagnostics, but derives no programs.
 ///
 /// # Errors
-/// The report of every mistake that is found.
+/// Fails with the report of every mistake.
 pub fn check(source: Source, load: Load) -> Result<Checked, Report> {
     check_text(source, load).map(visible::look)
 }
@@ -23,15 +23,15 @@ pub fn check(source: Source, load: Load) -> Result<Checked, Report> {
 /// Compiles a model file.
 ///
 /// # Errors
-/// The report of every mistake that is found.
+/// Fails with the report of every mistake.
 pub fn compile(source: Source, load: Load) -> Result<Compiled, Report> {
     compile_wanted(source, load, Wanted::Jacobian)
 }
 
-/// The same with what is wanted of the responses.
+/// The same with the wanted responses only.
 ///
 /// # Errors
-/// As [`compile`].
+/// Fails as [`compile`] does.
 pub fn compile_wanted(source: Source, load: Load, wanted: Wanted) -> Result<Compiled, Report> {
     check_text(source, load).map(|checked| derive_wanted(checked, wanted))
 }
@@ -39,7 +39,7 @@ pub fn compile_wanted(source: Source, load: Load, wanted: Wanted) -> Result<Comp
 /// Compiles the tokens of an inline macro.
 ///
 /// # Errors
-/// One `compile_error!` for each mistake, at the mistaken token.
+/// Fails with one `compile_error!` for each mistake, at the mistaken token.
 pub fn compile_tokens(tokens: TokenStream, load: Load) -> Result<Compiled, TokenStream> {
     check_tokens(tokens, load).map(derive)
 }
@@ -54,7 +54,8 @@ pub fn derive(model: Checked) -> Compiled {
     derive_wanted(model, Wanted::Jacobian)
 }
 
-/// The same with what is wanted of the responses: derivatives are most of the work for a model with many parameters and outputs.
+/// The same with the wanted responses only: derivatives are most of the work for a model with many parameters and
+/// outputs.
 pub fn derive_wanted(model: Checked, wanted: Wanted) -> Compiled {
     let mut graph = model.graph.clone();
     let motion = motion::derive(&model, &mut graph);

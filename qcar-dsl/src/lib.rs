@@ -1,7 +1,7 @@
 //! The axle compiler: model text in, equations, matrices and Rust out.
 //!
-//! The stages are modules, in the order of the data; a file uses only what is declared above it. What stages offer to others
-//! has a short path beside the one through its stage.
+//! The modules are stages, in the order of the data; a file uses only modules declared above it. The public items of a
+//! stage have a short path beside the one through the stage.
 
 pub mod source;
 // Mistakes are a catalogue.

@@ -1,7 +1,7 @@
 //! The model graph: an axle with its options taken, its names resolved and its units checked.
 //!
-//! It is what the text says and nothing derived from it: coordinates, links between them, inputs, outputs.
-//! Every expression lives in [`Model::graph`]. `parse` and `resolve` make it; all later stages read it.
+//! It contains the content of the text and nothing derived from it: coordinates, links between them, inputs, outputs.
+//! Every expression is in [`Model::graph`]. `parse` and `resolve` build it; all later stages read it.
 //!
 //! Sign convention: a link's stretch `s` is positive in extension and its law gives the *resisting* force
 //! `f(s, v)`, positive in tension (`k s + c v` for a spring and damper). A coordinate `q` of the stretch receives
@@ -24,7 +24,7 @@ pub struct Model {
     pub doc: String,
     /// The options taken, in the order of the family.
     pub choices: Vec<(String, String)>,
-    /// Where every expression of the model lives.
+    /// Graph of all expressions of the model.
     pub graph: Graph,
     /// In the order of the text.
     pub parameters: Vec<Parameter>,
@@ -49,7 +49,8 @@ pub struct Model {
 
 /// Where something was declared: its span, and the declaration as one canonical line of model text.
 ///
-/// The line is printed from the syntax tree, not cut from the file, so that every door generates the same bytes.
+/// The line is printed from the syntax tree instead of cut from the file, so that all ways to compile generate the same
+/// bytes.
 #[derive(Clone, Debug)]
 pub struct Declared {
     /// The name's place in its source.
@@ -65,7 +66,7 @@ pub struct Parameter {
     pub name: String,
     /// A coherent SI unit.
     pub unit: Unit,
-    /// What people call it.
+    /// Unit as usually written.
     pub unit_name: String,
     /// The sentence.
     pub doc: String,
@@ -75,7 +76,7 @@ pub struct Parameter {
     pub range: Option<(f64, f64)>,
     /// Declared `known`: never estimated unless a campaign asks for it, so the identifiability rules leave it alone.
     pub known: bool,
-    /// Declared `clock`: the time since a run began, which takes other values in it.
+    /// Declared `clock`: the time since the start of a run, which varies within it.
     pub clock: bool,
     /// Where.
     pub declared: Declared,
@@ -150,13 +151,13 @@ pub enum CoordinateKind {
 pub struct ForceInput {
     /// The name, unique in its direction.
     pub name: String,
-    /// The direction that its excitation counts to.
+    /// The direction of its excitation.
     pub direction: Direction,
-    /// What it makes grow: coordinates with their coefficients (functions of parameters only), each coordinate once.
-    /// A coordinate `q` receives `∂on/∂q` times the force (virtual work), so that of a difference each end gets its own
-    /// sign. Empty for an input that acts through laws alone.
+    /// The point, or difference of points, on which it acts: coordinates with their coefficients (functions of
+    /// parameters only), each coordinate once. A coordinate `q` receives `∂on/∂q` times the force (virtual work), so
+    /// that the ends of a difference get opposite signs. Empty for an input that acts through laws alone.
     pub on: Vec<(CoordinateId, Expr)>,
-    /// N, or N m where it turns.
+    /// N, or N m for a moment.
     pub unit: Unit,
     /// Where.
     pub declared: Declared,
@@ -202,12 +203,12 @@ pub struct Law {
     pub terms: Vec<Term>,
     /// Inner states of all terms, in the order of the text.
     pub inner: Vec<Inner>,
-    /// It may give energy: the text says `active`.
+    /// True if it may supply energy: the text declares it `active`.
     pub active: bool,
 }
 
 impl Law {
-    /// The other links whose stretch or rate the terms and the rates use.
+    /// The other links in the terms and the rates.
     pub fn other_links(&self, graph: &Graph, own: LinkId) -> BTreeSet<LinkId> {
         let link = |leaf| match leaf {
             Symbol::Stretch(link) | Symbol::Rate(link) => Some(link).filter(|link| *link != own),
@@ -216,7 +217,7 @@ impl Law {
         self.leaves(graph).into_iter().filter_map(link).collect()
     }
 
-    /// The force inputs that the terms and the rates use, by their places in `Model::forces`.
+    /// The force inputs in the terms and the rates, by their positions in `Model::forces`.
     pub fn force_inputs(&self, graph: &Graph) -> Vec<u16> {
         let input = |leaf| match leaf {
             Symbol::Force(place) => Some(place),
@@ -225,7 +226,7 @@ impl Law {
         self.leaves(graph).into_iter().filter_map(input).collect()
     }
 
-    /// What the written forces and the rates depend on.
+    /// Symbols in the forces and the rates.
     pub fn leaves(&self, graph: &Graph) -> BTreeSet<Symbol> {
         let forces = self.terms.iter().filter_map(|term| match *term {
             Term::Force(force) => Some(force),
@@ -256,16 +257,16 @@ pub struct Inner {
     pub name: String,
     /// Its unit.
     pub unit: Unit,
-    /// Its time derivative, of what a force may depend on.
+    /// Its time derivative; it may use the arguments of a force.
     pub rate: Expr,
 }
 
-/// Something to be seen.
+/// A measurable quantity.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Signal {
     /// The position, velocity or acceleration of a coordinate.
     Motion(CoordinateId, Quantity),
-    /// That of a point, by its place in `Model::points`.
+    /// The same of a point, by its position in `Model::points`.
     Point(u16, Quantity),
     /// The resisting force of a link, positive in tension.
     LinkForce(LinkId),
@@ -276,9 +277,9 @@ pub enum Signal {
 /// An output of the model.
 #[derive(Clone, Debug)]
 pub struct Output {
-    /// `z_body_acceleration`, or the name that the text gives.
+    /// `z_body_acceleration`, or the name in the text.
     pub name: String,
-    /// What is seen.
+    /// The measured quantity.
     pub signal: Signal,
     /// Its unit.
     pub unit: Unit,
@@ -291,18 +292,18 @@ pub struct Output {
 pub struct Channel {
     /// The name.
     pub name: String,
-    /// Above the line.
+    /// Numerator.
     pub numerator: Signal,
-    /// Below the line.
+    /// Denominator.
     pub denominator: Reference,
     /// Where.
     pub declared: Declared,
 }
 
-/// What a channel is compared with.
+/// Denominator of a channel.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Reference {
-    /// Something that moves, or that a link carries.
+    /// A signal of a coordinate or link.
     Signal(Signal),
     /// A force input, by its place in `Model::forces`.
     Force(u16),

@@ -1,11 +1,11 @@
 //! Source texts, and positions in them.
 
-/// A place in a source, as plain data, so that models and reports can be sent to other threads.
+/// A position in a source, as plain data, so that models and reports can be sent to other threads.
 ///
-/// For a text it is a range of bytes. For the tokens of an inline macro, which has no text of its own, `start` is the
-/// place of the token in the list that the parser kept of the compiler's spans.
+/// For a text it is a range of bytes. For the tokens of an inline macro, which has no text, `start` is the position of
+/// the token in the parser's list of compiler spans.
 ///
-/// Two places are equal wherever they are: two syntax trees are equal when they say the same.
+/// All positions compare equal, so that two syntax trees are equal if their content is.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Span {
     /// Which source: an index into the list of sources of one compilation; the model file itself is the first.
@@ -23,7 +23,7 @@ impl PartialEq for Span {
 }
 
 impl Span {
-    /// The smallest place that covers both; of places in different sources, the first.
+    /// The smallest position that covers both; for positions in different sources, the first.
     pub fn join(self, other: Span) -> Span {
         if self.source != other.source {
             return self;
@@ -46,7 +46,7 @@ pub struct Source {
 }
 
 impl Source {
-    /// The same without the mark that some editors put before the first character.
+    /// The same without a byte order mark.
     pub fn without_mark(mut self) -> Source {
         if let Some(text) = self.text.strip_prefix('\u{feff}') {
             self.text = text.to_string();
@@ -74,7 +74,7 @@ impl Source {
         self.text[start..end].trim_end_matches('\r')
     }
 
-    /// The nearest border between characters at or before a byte.
+    /// The nearest character boundary at or before a byte.
     fn border(&self, byte: usize) -> usize {
         (0..=byte.min(self.text.len()))
             .rev()

@@ -4,7 +4,7 @@
 //! VEX and EVEX), chapters 3 to 5 its opcode. One or four numbers need AVX, eight AVX-512 with its part DQ. No multiplication is fused
 //! with an addition.
 
-/// A register for addresses, by its number.
+/// A register for addresses, by number.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Pointer(u8);
 
@@ -25,28 +25,28 @@ impl Pointer {
     pub const R15: Pointer = Pointer(15);
 }
 
-/// A register for numbers, by its number.
+/// A register for numbers, by number.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Register(pub u8);
 
-/// A place in memory.
+/// An address in memory.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Memory {
     pub base: Pointer,
-    /// Added to the base.
+    /// Index register, added to the base.
     pub index: Option<Pointer>,
-    /// In bytes.
+    /// Displacement, bytes.
     pub offset: i32,
 }
 
-/// What an instruction reads last: a register or memory.
+/// Last operand of an instruction: a register or memory.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Operand {
     Register(Register),
     Memory(Memory),
 }
 
-/// How many numbers an instruction works on.
+/// Number of values in a vector.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Width {
     One = 1,
@@ -60,7 +60,7 @@ impl Width {
         self as usize
     }
 
-    /// Bytes of so many numbers.
+    /// Bytes of a vector.
     pub fn bytes(self) -> usize {
         size_of::<f64>() * self.numbers()
     }
@@ -73,14 +73,14 @@ pub enum Arithmetic {
     Add = 0x58,
     Mul = 0x59,
     Sub = 0x5c,
-    /// The second where one is not a number, or both are zero.
+    /// Minimum; the second operand if one is NaN, or if both are zero.
     Min = 0x5d,
     Div = 0x5e,
     /// As `Min`.
     Max = 0x5f,
 }
 
-/// What is done to bits, by its opcode.
+/// Bit operations, by opcode.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Bits {
     And = 0x54,
@@ -91,20 +91,20 @@ pub enum Bits {
 /// Comparisons, by their predicate; none of them traps.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Comparison {
-    /// One of both is not a number.
+    /// True if one operand is NaN.
     Unordered = 0x03,
     EqualOrUnordered = 0x08,
     Greater = 0x1e,
 }
 
-/// The prefix that a VEX or EVEX stands for.
+/// Prefix of an instruction in VEX or EVEX form.
 #[derive(Clone, Copy)]
 enum Prefix {
     P66 = 1,
     F2 = 3,
 }
 
-/// The table that an opcode is from.
+/// Opcode map.
 #[derive(Clone, Copy, PartialEq)]
 enum Map {
     M0F = 1,
@@ -112,29 +112,29 @@ enum Map {
     M0F3A = 3,
 }
 
-/// The mask register of comparisons of eight numbers.
+/// Mask register for comparisons of eight numbers.
 const MASK: u8 = 1;
-/// Of an instruction that has none.
+/// No mask.
 const ALL: u8 = 0;
 
-/// Instructions one after the other.
+/// A sequence of instructions.
 #[derive(Default)]
 pub struct Assembler {
     bytes: Vec<u8>,
 }
 
 impl Assembler {
-    /// All of them.
+    /// The bytes.
     pub fn into_bytes(self) -> Vec<u8> {
         self.bytes
     }
 
-    /// Where the next one stands.
+    /// Position of the next instruction.
     pub fn here(&self) -> usize {
         self.bytes.len()
     }
 
-    /// Numbers from memory; a single one is followed by zeros.
+    /// Loads numbers from memory; a single one is followed by zeros.
     pub fn load(&mut self, width: Width, to: Register, from: Memory) {
         self.vector(
             width,
@@ -146,7 +146,7 @@ impl Assembler {
         );
     }
 
-    /// Numbers to memory.
+    /// Stores numbers to memory.
     pub fn store(&mut self, width: Width, from: Register, to: Memory) {
         self.vector(
             width,
@@ -158,7 +158,7 @@ impl Assembler {
         );
     }
 
-    /// One number from memory, four or eight times.
+    /// Loads one number from memory into four or eight lanes.
     pub fn broadcast(&mut self, width: Width, to: Register, from: Memory) {
         let (opcode, from) = ((Map::M0F38, 0x19), Operand::Memory(from));
         match width {
@@ -169,24 +169,26 @@ impl Assembler {
 
     /// `to = a ∘ b`
     pub fn arithmetic(&mut self, what: Arithmetic, width: Width, to: Register, a: Register, b: Operand) {
-        // The root of several has one operand alone.
+        // The square root of a vector has only one operand.
         let a = (what != Arithmetic::Sqrt || width == Width::One).then_some(a);
         self.vector(width, one_or_more(width), (Map::M0F, what as u8), to, a, b);
     }
 
-    /// `to = a ∘ b`, bit by bit; of memory, all of a register is read.
+    /// `to = a ∘ b`, bitwise; a memory operand is read as a whole register.
     pub fn bits(&mut self, what: Bits, width: Width, to: Register, a: Register, b: Operand) {
         self.vector(width, Prefix::P66, (Map::M0F, what as u8), to, Some(a), b);
     }
 
-    /// All bits where `a` compares with `b` so, else none. Of eight numbers the result is in the [`MASK`] instead of in `to`.
+    /// Sets all bits of lanes in which the comparison of `a` and `b` holds, none elsewhere. For eight numbers the
+    /// result is in the [`MASK`] instead of in `to`.
     pub fn compare(&mut self, what: Comparison, width: Width, to: Register, a: Register, b: Operand) {
         let to = if width == Width::Eight { Register(MASK) } else { to };
         self.vector(width, one_or_more(width), (Map::M0F, 0xc2), to, Some(a), b);
         self.bytes.push(what as u8);
     }
 
-    /// `b` where `test` has its first bit, else `a`; of eight numbers the test is what was compared last.
+    /// `b` in lanes where `test` has its first bit set, otherwise `a`; for eight numbers the test is the last
+    /// comparison.
     pub fn blend(&mut self, width: Width, to: Register, a: Register, b: Register, test: Register) {
         let b = Operand::Register(b);
         if width == Width::Eight {
@@ -196,7 +198,7 @@ impl Assembler {
         self.bytes.push(test.0 << 4);
     }
 
-    /// Ends the use of wide registers, which would slow down what knows narrow ones alone.
+    /// Ends the use of wide registers, which would slow down code for narrow ones.
     pub fn narrow(&mut self) {
         self.bytes.extend([0xc5, 0xf8, 0x77]);
     }
@@ -206,17 +208,17 @@ impl Assembler {
         self.rex(0x89, from.0, Operand::Register(Register(to.0)));
     }
 
-    /// A pointer from memory.
+    /// Loads a pointer.
     pub fn load_pointer(&mut self, to: Pointer, from: Memory) {
         self.rex(0x8b, to.0, Operand::Memory(from));
     }
 
-    /// A pointer to memory.
+    /// Stores a pointer.
     pub fn store_pointer(&mut self, from: Pointer, to: Memory) {
         self.rex(0x89, from.0, Operand::Memory(to));
     }
 
-    /// Where a place in memory is.
+    /// The address of a memory operand.
     pub fn address(&mut self, to: Pointer, of: Memory) {
         self.rex(0x8d, to.0, Operand::Memory(of));
     }
@@ -245,23 +247,23 @@ impl Assembler {
         self.bytes.extend(number.to_le_bytes());
     }
 
-    /// Puts a register on the stack.
+    /// Pushes a register.
     pub fn push(&mut self, from: Pointer) {
         self.bytes.extend([0x40 | from.0 >> 3, 0x50 | from.0 & 7]);
     }
 
-    /// Takes one from there.
+    /// Pops a register.
     pub fn pop(&mut self, to: Pointer) {
         self.bytes.extend([0x40 | to.0 >> 3, 0x58 | to.0 & 7]);
     }
 
-    /// Writes to memory what stands there already, so that the system finds room for it.
+    /// Reads and writes a memory word unchanged, so that the system maps its page.
     pub fn touch(&mut self, place: Memory) {
         self.rex(0x83, 1, Operand::Memory(place));
         self.bytes.push(0);
     }
 
-    /// Goes on at an earlier place while `a < b`.
+    /// Jumps back to an earlier position while `a < b`.
     pub fn repeat_while_below(&mut self, a: Pointer, b: Pointer, from: usize) {
         self.rex(0x39, b.0, Operand::Register(Register(a.0)));
         self.bytes.extend([0x0f, 0x82]);
@@ -269,12 +271,12 @@ impl Assembler {
         self.bytes.extend((back as i32).to_le_bytes());
     }
 
-    /// Calls what a register points to.
+    /// Calls the function that a register points to.
     pub fn call(&mut self, target: Pointer) {
         self.bytes.extend([0x40 | target.0 >> 3, 0xff, 0xd0 | target.0 & 7]);
     }
 
-    /// Goes back to the caller.
+    /// Returns to the caller.
     pub fn ret(&mut self) {
         self.bytes.push(0xc3);
     }
@@ -305,7 +307,7 @@ impl Assembler {
         b: Operand,
     ) {
         let (index, base) = high_bits(b);
-        // The fields of registers are kept inverted.
+        // The fields of registers are inverted.
         let inverted = !a.map_or(0, |a| a.0) & 15;
         let last = inverted << 3 | u8::from(width == Width::Four) << 2 | prefix as u8;
         let reg_bit = (!reg.0 >> 3 & 1) << 7;
@@ -318,7 +320,8 @@ impl Assembler {
         self.operands(reg.0, b, 1);
     }
 
-    /// An instruction on the numbers of a wide register that the mask has. So many numbers are in memory.
+    /// An instruction on those numbers of a wide register that the mask selects; the memory operand has this many
+    /// numbers.
     fn evex(
         &mut self,
         memory: Width,
@@ -329,7 +332,7 @@ impl Assembler {
         b: Operand,
     ) {
         let (index, base) = high_bits(b);
-        // The fifth bit of a register that is read last stands where else that of an index does.
+        // The fifth bit of the last register is in the field that otherwise belongs to an index.
         let index = match b {
             Operand::Register(Register(b)) => b >> 4,
             Operand::Memory(_) => index,
@@ -350,7 +353,7 @@ impl Assembler {
         self.operands(reg, b, 1);
     }
 
-    /// ModRM, SIB and displacement; one of a byte counts units of so many bytes.
+    /// ModRM, SIB and displacement; a displacement of one byte counts in units of this many bytes.
     fn operands(&mut self, reg: u8, b: Operand, unit: i32) {
         let reg = (reg & 7) << 3;
         let memory = match b {
@@ -361,7 +364,7 @@ impl Assembler {
         let short = units.and_then(|units| i8::try_from(units).ok());
         let form = if short.is_some() { 0x40 } else { 0x80 };
         let base = memory.base.0 & 7;
-        // The stack pointer and its neighbour R12 stand for "see the next byte", and there for "no index".
+        // In these fields, the stack pointer and R12 mean "SIB byte follows", and in SIB "no index".
         match memory.index {
             None if base != 4 => self.bytes.push(form | reg | base),
             index => {

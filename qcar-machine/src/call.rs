@@ -1,4 +1,4 @@
-//! What machine code does not compute itself: Rust's functions, and tables.
+//! Operations that machine code does not compute itself: functions of Rust, and tables.
 
 use qcar_dsl::expr::{Curve, Function};
 use qcar_dsl::program::{Op, Program};
@@ -10,15 +10,16 @@ pub enum Call {
     Function(Function),
     /// A power.
     Power,
-    /// A curve of an order, by the places of its entries among the arguments; the first is the abscissa.
+    /// Derivative of a curve of this order, by the positions of its entries among the arguments; the first is the
+    /// abscissa.
     Table(u8, Curve<usize>),
 }
 
 impl Call {
-    /// The operation, if it is such a one.
+    /// The operation as a call; `None` if it is not one.
     pub fn of(program: &Program, op: Op) -> Option<Call> {
         match op {
-            // What one or two instructions do.
+            // Operations of one or two instructions.
             Op::Call(Function::Abs | Function::Sign | Function::Sqrt, _) => None,
             Op::Call(function, _) => Some(Call::Function(function)),
             Op::Pow(..) => Some(Call::Power),
@@ -31,7 +32,7 @@ impl Call {
         }
     }
 
-    /// How many arguments it has.
+    /// Number of arguments.
     pub fn arguments(&self) -> usize {
         match self {
             Call::Function(_) => 1,
@@ -40,7 +41,7 @@ impl Call {
         }
     }
 
-    /// Its value, as the interpreter has it.
+    /// Value, with the bits of the interpreter.
     pub fn value(&self, argument: impl Fn(usize) -> f64) -> f64 {
         match self {
             Call::Function(function) => function.value(argument(0)),

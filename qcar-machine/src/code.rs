@@ -1,4 +1,4 @@
-//! The way into machine code, and out of it: all that the compiler cannot see into.
+//! Entry to machine code and its calls: all unsafe code.
 #![allow(
     unsafe_code,
     reason = "a processor runs what was written into memory, and Rust cannot know what that does"
@@ -19,27 +19,28 @@ use crate::translate::{Translated, Wide, translate};
 /// Bytes of a number.
 const NUMBER: usize = size_of::<f64>();
 
-/// At one point, or for a row of sets: addresses of four parts, of the results and of the numbers.
+/// For one point, or for a row of sets: addresses of four parts, of the results and of the constants.
 type Entered = unsafe extern "sysv64" fn(*const f64, *const f64, *const f64, *const f64, *mut f64, *const Wide);
-/// At many points: the shared part, the rows that are read and written, the bytes to the first point and to the end, and the numbers.
+/// For many points: the shared part, the rows that are read and written, the offsets in bytes of the first point and of
+/// the end, and the constants.
 type Swept = unsafe extern "sysv64" fn(*const f64, *const *const f64, *const *mut f64, usize, usize, *const Wide);
 
 /// A program as machine code in one shape.
 #[derive(Debug)]
 pub struct Code {
     memory: Mmap,
-    /// Where they stand is written in the code.
+    /// The calls; the code contains their addresses.
     _calls: Box<[Call]>,
     numbers: Box<[Wide]>,
     reads: Reads,
     results: usize,
-    /// How many sets or points the instructions compute together.
+    /// Number of sets or points that the instructions compute together.
     width: usize,
 }
 
 impl Code {
-    /// For vectors of this many numbers. Nothing where this machine cannot run such code, the system allows none, or the program has no
-    /// translation.
+    /// The code for vectors of this many numbers. `None` if this machine cannot run it, if the system refuses
+    /// executable memory, or if the program has no translation.
     pub fn new(vectors: &Vectors, program: &Program, shape: Shape, breadth: Breadth) -> Option<Code> {
         if !breadth.is_there() {
             return None;
@@ -63,10 +64,10 @@ impl Code {
         })
     }
 
-    /// Computes it at one point, if it is code for one.
+    /// Computes the program at one point, with code for one point.
     ///
     /// # Panics
-    /// Where something is given fewer entries than the program reads, or less room than it has results.
+    /// If an argument has fewer entries than the program reads, or the results do not fit.
     pub fn run(&self, given: &Given, into: &mut [f64]) {
         let mut parts = [std::ptr::null(); 4];
         for (pointer, &(part, least)) in parts.iter_mut().zip(&self.reads.parts) {
@@ -82,7 +83,7 @@ impl Code {
         }
     }
 
-    /// Computes it for each of the sets, if it is code for them.
+    /// Computes the program for each of the sets, with code for sets.
     ///
     /// # Panics
     /// As [`Code::run`].
@@ -104,8 +105,8 @@ impl Code {
         }
     }
 
-    /// Computes it at so many points, if it is code for many, and says whether there were enough. The results fill the slices one
-    /// after the other, a row of points each.
+    /// Computes the program at this many points, with code for points; false if there are too few. The results are
+    /// written one after the other, each as a row of points.
     ///
     /// # Panics
     /// As [`Code::run`].
@@ -136,7 +137,7 @@ impl Code {
                 code(shared.as_ptr(), read.as_ptr(), written.as_ptr(), from, to, numbers);
             }
         };
-        // The last group is whole, too: it may compute again what the one before it has.
+        // The last group is complete too: it may compute some points of the previous one again.
         let last = points - self.width;
         if last > 0 {
             run(0, last);
@@ -156,7 +157,7 @@ fn at_least<T>(entries: &[T], least: usize) -> &[T] {
     entries
 }
 
-/// Computes what the code calls at `N` points, each argument a row of them.
+/// Computes a call at `N` points, with a row of them for each argument.
 ///
 /// # Safety
 /// There are as many rows as the call has arguments.
@@ -174,7 +175,7 @@ mod tests {
     use qcar_dsl::expr::Function;
     use qcar_dsl::program::{Op, Value};
 
-    /// Else all would be left to the interpreter, which has the same bits.
+    /// Without code, everything would be left to the interpreter, which has the same bits.
     #[test]
     fn a_processor_runs_machine_code_in_each_shape_and_breadth() {
         [Breadth::Four, Breadth::Eight].into_iter().for_each(runs_in_each_shape);

@@ -1,4 +1,4 @@
-//! In place of machine code on processors that it is not written for: there is none.
+//! Replacement for machine code on other processors: there is none.
 
 use qcar_dsl::derive::vectors::Vectors;
 use qcar_dsl::evaluate::given::{Given, Part};

@@ -1,12 +1,12 @@
 //! Machine code for models that are read at run time.
 //!
-//! [`Machine`] is the interpreter of `qcar-dsl` with its programs as instructions of x86-64. The operations are the same, in the order of
-//! the program, one instruction each and none fused, and functions are those of Rust: the bits are those of the interpreter, but that no
-//! two ways of computing need agree on which not-a-number is none.
+//! [`Machine`] is the interpreter of `qcar-dsl` with its programs as instructions of x86-64. It runs the same
+//! operations in the order of the program, as one instruction each, without fusing any, and calls the functions of
+//! Rust. So the bits are those of the interpreter, except for the payload of NaN.
 
 // Shapes of a program: for one point, eight sets, or rows of points.
 mod shape;
-// Where leaves are read.
+// Positions of the leaves in the arguments.
 #[cfg(target_arch = "x86_64")]
 mod reads;
 // What is left to Rust's functions.

@@ -1,4 +1,4 @@
-//! A model whose programs are machine code, each from its first use on.
+//! A model whose programs become machine code on first use.
 
 use std::sync::OnceLock;
 
@@ -21,7 +21,7 @@ use crate::shape::{Breadth, Shape};
 #[derive(Debug)]
 pub struct Machine {
     breadth: Breadth,
-    /// Computes what has no machine code.
+    /// The interpreter, for programs without machine code.
     interpreter: Evaluator,
     vectors: Vectors,
     programs: Programs,
@@ -31,36 +31,36 @@ pub struct Machine {
     matrices: Routine,
     sensitivities: Routine,
     parameter_jacobian: Routine,
-    /// Of each excitation the response, and that with its Jacobian.
+    /// The response to each excitation, without and with its Jacobian.
     responses: Vec<[Routine; 2]>,
     contact_force: Routine,
     rolling_derivative: Routine,
     rolling_outputs: Routine,
-    /// Links that stand alone, by their places.
+    /// Models of single links, by their positions.
     alone: Vec<(usize, Machine)>,
 }
 
-/// The code of a program in each shape, from its first use on; `None` where there is none.
+/// The code of a program in each shape, translated on first use; `None` if there is none.
 #[derive(Debug, Default)]
 struct Routine {
     once: OnceLock<Option<Code>>,
     sets: OnceLock<Option<Code>>,
     points: OnceLock<Option<Code>>,
-    /// At fewer points than fill the widest vectors.
+    /// For fewer points than the widest vectors hold.
     few: OnceLock<Option<Code>>,
 }
 
-/// What varies from point to point.
+/// The parts that vary from point to point.
 const MOVING: Shape = Shape::Points(&[Part::States, Part::Inputs]);
 const LINES: Shape = Shape::Points(&[Part::Frequency]);
 
 impl Machine {
-    /// Of a compiled model, for the widest vectors of this processor. Nothing is translated yet.
+    /// A machine for a compiled model, with the widest vectors of this processor. Nothing is translated yet.
     pub fn new(compiled: &Compiled) -> Self {
         Self::with(compiled, Breadth::widest())
     }
 
-    /// The same for vectors of four numbers (AVX), whatever the processor has beyond them. The bits are the same.
+    /// The same with vectors of four numbers (AVX), whatever the processor has. The bits are the same.
     pub fn narrow(compiled: &Compiled) -> Self {
         Self::with(compiled, Breadth::Four)
     }
@@ -85,7 +85,7 @@ impl Machine {
         }
     }
 
-    /// The same with a link that stands alone, too, compiled as a model of its own.
+    /// The same with a further model of a single link.
     pub fn with_alone(mut self, axis: &str, link: &str, compiled: &Compiled) -> Self {
         let mut links = self.about().links.iter();
         let place = links.position(|own| own.axis == axis && own.name == link);
@@ -118,7 +118,7 @@ impl Machine {
         self.code(&routine.sets, program, Shape::Sets)
     }
 
-    /// At several points; false where that is left to the interpreter.
+    /// Computes several points; false if that is left to the interpreter.
     fn sweep(&self, routine: &Routine, program: &Program, given: &Given, points: usize, into: &mut [f64]) -> bool {
         let code = self.points(routine, program, MOVING, points);
         code.is_some_and(|code| code.sweep(given, points, &mut [into]))

@@ -1,4 +1,4 @@
-//! Where the leaves of a program stand in what its code is given.
+//! Positions of the leaves of a program in the arguments of its code.
 
 use qcar_dsl::evaluate::given::{Part, place};
 use qcar_dsl::program::{Program, Value};
@@ -6,28 +6,28 @@ use qcar_dsl::program::{Program, Value};
 use crate::shape::Shape;
 use qcar_dsl::derive::vectors::Vectors;
 
-/// A leaf that is given.
+/// Position of a leaf.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Leaf {
-    /// An entry of a part, by the place of the part in [`Reads::parts`].
+    /// An entry of a part, by the position of the part in [`Reads::parts`].
     Entry { part: usize, entry: usize },
-    /// A row of points, by its place in [`Reads::rows`].
+    /// A row of points, by its position in [`Reads::rows`].
     Row(usize),
 }
 
-/// What a program reads in a shape.
+/// Inputs of a program in a shape.
 #[derive(Debug)]
 pub struct Reads {
-    /// Parts that are read by entry, each with how many entries it has at least.
+    /// Parts that are read entry by entry, with the smallest number of entries.
     pub parts: Vec<(Part, usize)>,
-    /// The entries of varying parts that are read by row.
+    /// Entries of varying parts, which are read as rows.
     pub rows: Vec<(Part, usize)>,
-    /// The leaf of each value of the program; of a number and an operation none.
+    /// Leaf of each value of the program; `None` for a constant or an operation.
     leaves: Vec<Option<Leaf>>,
 }
 
 impl Reads {
-    /// Of all leaves of a program.
+    /// The positions of all leaves of a program.
     pub fn new(vectors: &Vectors, program: &Program, shape: Shape) -> Self {
         let mut reads = Reads {
             parts: Vec::new(),
@@ -41,7 +41,7 @@ impl Reads {
         reads
     }
 
-    /// How a value is given.
+    /// Position of a value.
     pub fn of(&self, value: Value) -> Option<Leaf> {
         self.leaves[value.0 as usize]
     }

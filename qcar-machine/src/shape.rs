@@ -1,19 +1,19 @@
-//! In which shapes there is code of a program, and for vectors of which breadth.
+//! Shapes of the code of a program, and widths of its vectors.
 
 use qcar_dsl::evaluate::given::Part;
 
-/// How often a program is computed in a call.
+/// Number of evaluations of a program in a call.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Shape {
     /// At one point.
     Once,
-    /// For [`qcar_model::LANES`] sets, of which each entry has a row.
+    /// For [`qcar_model::LANES`] sets, with a row for each entry.
     Sets,
-    /// At many points, of which each entry of the varying parts has a row.
+    /// At many points, with a row for each entry of the varying parts.
     Points(&'static [Part]),
 }
 
-/// How many numbers a vector holds, where several sets or points are computed.
+/// Number of values in a vector, for several sets or points.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Breadth {
     /// AVX.
@@ -23,7 +23,7 @@ pub enum Breadth {
 }
 
 impl Breadth {
-    /// The most that this processor has.
+    /// The widest vectors of this processor.
     pub fn widest() -> Self {
         if Self::Eight.is_there() {
             Self::Eight
@@ -32,7 +32,7 @@ impl Breadth {
         }
     }
 
-    /// True where this processor has such vectors.
+    /// True if this processor has such vectors.
     pub fn is_there(self) -> bool {
         #[cfg(target_arch = "x86_64")]
         return match self {

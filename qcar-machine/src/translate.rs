@@ -1,4 +1,4 @@
-//! A straight-line program as machine code: the operations in their order, each as its instruction.
+//! Translates a straight-line program into machine code: each operation as its instruction, in order.
 
 // Entry, exit and stack frame of a function.
 mod frame;
@@ -13,12 +13,12 @@ use crate::shape::Shape;
 use crate::values::{OWN, Values};
 use frame::{Frame, Place};
 
-/// A number as wide as the widest register, of which narrower ones read the beginning.
+/// A constant as wide as the widest register; narrower registers read its beginning.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct Wide(pub [f64; 8]);
 
-/// In front of the numbers of a program: what signs and directions are made of.
+/// Constants before those of the program, for signs and directions.
 const OWN_NUMBERS: [f64; 4] = [-0.0, f64::from_bits(!SIGN), 1.0, 0.0];
 const SIGN: u64 = 1 << 63;
 const SIGN_BIT: usize = 0;
@@ -26,20 +26,20 @@ const ALL_BUT_SIGN: usize = 1;
 const ONE: usize = 2;
 const ZERO: usize = 3;
 
-/// The code of a program with what it refers to.
+/// The code of a program with the data that it uses.
 #[derive(Debug)]
 pub struct Translated {
     /// The instructions.
     pub code: Vec<u8>,
-    /// What it calls; the code knows where each stands.
+    /// Calls; the code contains the address of each.
     pub calls: Box<[Call]>,
-    /// The numbers of the program.
+    /// Constants of the program.
     pub numbers: Box<[Wide]>,
 }
 
 /// Translates a program. `enter` is the address of the function that computes a [`Call`].
 ///
-/// Nothing where it reads more parts than there are registers for their addresses, or needs too much of the stack.
+/// `None` if the program reads more parts than there are registers for addresses, or needs too much stack.
 pub fn translate(program: &Program, reads: &Reads, (shape, width): (Shape, Width), enter: usize) -> Option<Translated> {
     if reads.parts.len() > frame::parts(shape) {
         return None;
@@ -63,9 +63,9 @@ struct Writer<'a> {
     values: Values,
     body: Assembler,
     numbers: Vec<Wide>,
-    /// Of each value of the program, where its number stands.
+    /// Position of the constant of each value of the program.
     number: Vec<Option<usize>>,
-    /// The results that are each value, in a row of pairs of value and place.
+    /// Results, as sorted pairs of value and position.
     results: Vec<(Value, usize)>,
     calls: std::slice::Iter<'a, Call>,
     enter: usize,
@@ -105,7 +105,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// All operations, for each group of points.
+    /// Writes all operations, for each group of points.
     fn program(&mut self) {
         let start = self.body.here();
         for (place, &op) in self.program.ops.iter().enumerate() {
@@ -139,7 +139,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// An operation whose arguments may change places.
+    /// An operation with interchangeable operands.
     fn either_way(&mut self, what: Arithmetic, value: Value, a: Value, b: Value) {
         let swap = self.values.register(a).is_none() && self.values.register(b).is_some();
         let (a, b) = if swap { (b, a) } else { (a, b) };
@@ -171,7 +171,7 @@ impl<'a> Writer<'a> {
         self.body.bits(what, self.width(), to, from, number);
     }
 
-    /// The other one where one is not a number, the first where both are zero: what Rust's functions come to.
+    /// Minimum or maximum as in Rust: the other operand if one is NaN, the first if both are zero.
     fn extreme(&mut self, what: Arithmetic, value: Value, a: Value, b: Value) {
         let ([a, b], to) = self.apart(value, [a, b]);
         let width = self.width();
@@ -181,7 +181,7 @@ impl<'a> Writer<'a> {
         self.body.blend(width, to, to, b, OWN);
     }
 
-    /// One with the sign of `a`; zero, and what is not a number, as it is.
+    /// 1 with the sign of `a`; zero and NaN are unchanged.
     fn sign(&mut self, value: Value, argument: Value) {
         let a = self.in_register(argument);
         let (to, width) = (self.allocate(value), self.width());
@@ -203,7 +203,7 @@ impl<'a> Writer<'a> {
         self.body.blend(self.width(), to, b, a, OWN);
     }
 
-    /// Two arguments in registers, and another one for the result.
+    /// Two operands in registers, and another register for the result.
     fn apart(&mut self, value: Value, arguments: [Value; 2]) -> ([Register; 2], Register) {
         let registers = arguments.map(|argument| self.in_register(argument));
         let to = self.allocate(value);
@@ -211,7 +211,7 @@ impl<'a> Writer<'a> {
         (registers, to)
     }
 
-    /// The arguments go to a row in memory, and all that is needed later to memory, too.
+    /// Stores the arguments as a row in memory, and all values that are needed later.
     fn call(&mut self, value: Value, op: Op) {
         let width = self.width();
         let arguments: Vec<Value> = self.program.arguments(op).collect();
@@ -253,7 +253,7 @@ impl<'a> Writer<'a> {
         self.frame.width
     }
 
-    /// A register for a result or what is loaded; what stood there before, and is computed, is kept in memory.
+    /// A register for a result or a load. Its former value, if computed and still needed, is stored in memory.
     fn allocate(&mut self, value: Value) -> Register {
         let (register, evicted) = self.values.allocate(value);
         if let Some(evicted) = evicted {
@@ -262,7 +262,7 @@ impl<'a> Writer<'a> {
         register
     }
 
-    /// A computed value that leaves its register stays in memory; a leaf is there anyway.
+    /// A computed value that leaves its register is stored in memory; a leaf is there already.
     fn keep(&mut self, register: Register, value: Value) {
         let is_leaf = self.program.ops[value.0 as usize].is_leaf();
         if !is_leaf && self.values.slot(value).is_none() {
@@ -281,7 +281,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// A value that is read once more stays in memory, and so does one that would drive out another.
+    /// A value with a single remaining use stays in memory, and so does one that would displace another.
     fn operand(&mut self, value: Value) -> Operand {
         let waits = self.values.register(value).is_none();
         if waits
@@ -302,7 +302,7 @@ impl<'a> Writer<'a> {
         to
     }
 
-    /// Where a value that is in no register stands in memory.
+    /// Memory operand of a value that is in no register.
     fn place(&mut self, value: Value) -> Place {
         if let Some(slot) = self.values.slot(value) {
             return Place::Whole(self.frame.slot(slot));

@@ -1,22 +1,22 @@
-//! Which values stand in registers, and which wait in memory.
+//! Register allocation: which values are in registers, and which in memory.
 //!
-//! A straight-line program says when each value is needed next, so that a register is taken from the value that is needed last
+//! In a straight-line program the next use of each value is known, so the register with the farthest next use is taken
 //! (Belády, L. A.: A study of replacement algorithms for a virtual-storage computer, IBM Systems Journal 5, 1966).
 
 use qcar_dsl::program::{Program, Value};
 
 use crate::assemble::{Register, Width};
 
-/// Of no value's: left for what an operation keeps to itself.
+/// Registers reserved for the temporaries of an operation.
 pub const OWN: Register = Register(15);
 
-/// The values of a program while its code is written.
+/// Locations of the values of a program while its code is written.
 pub struct Values {
-    /// Where the operations stand that need a value, those of each in a row.
+    /// Positions of the operations that use a value, value by value.
     needed: Vec<u32>,
-    /// Of each value the rest of its row: the operations that are still to come.
+    /// Remaining uses of each value, as a range of these.
     rest: Vec<(u32, u32)>,
-    /// What stands in each register.
+    /// Value in each register.
     registers: Vec<Option<Value>>,
     register: Vec<Option<Register>>,
     slot: Vec<Option<u32>>,
@@ -25,7 +25,7 @@ pub struct Values {
 }
 
 impl Values {
-    /// None of them anywhere, with as many registers as instructions of this width have.
+    /// No value anywhere, with the number of registers for this width.
     pub fn new(program: &Program, width: Width) -> Self {
         let count = program.ops.len();
         let mut rest = vec![(0, 0); count + 1];
@@ -57,34 +57,34 @@ impl Values {
         }
     }
 
-    /// How many places in memory there are.
+    /// Number of memory slots in use.
     pub fn slots(&self) -> u32 {
         self.slots
     }
 
-    /// The register in which a value stands.
+    /// Register of a value.
     pub fn register(&self, value: Value) -> Option<Register> {
         self.register[value.0 as usize]
     }
 
-    /// The place in memory where a value waits.
+    /// Memory slot of a value.
     pub fn slot(&self, value: Value) -> Option<u32> {
         self.slot[value.0 as usize]
     }
 
-    /// True where nothing stands in some register.
+    /// True if a register is free.
     pub fn has_room(&self) -> bool {
         self.registers.iter().any(Option::is_none)
     }
 
-    /// True where the operation that is written now is the last that needs a value.
+    /// True if the present operation is the last use of a value.
     pub fn is_last(&self, value: Value) -> bool {
         let (next, end) = self.rest[value.0 as usize];
         let rest = &self.needed[next as usize..end as usize];
         rest.first() == rest.last()
     }
 
-    /// An operation reads a value. Where no later one does, the result may have its register.
+    /// An operation uses a value. If it is the last one, the result may get its register.
     pub fn consume(&mut self, value: Value) {
         self.rest[value.0 as usize].0 += 1;
         if self.next(value).is_none() {
@@ -92,7 +92,7 @@ impl Values {
         }
     }
 
-    /// Frees the places of a value that is needed no more, now that all of an operation is written.
+    /// Frees the locations of a value without further uses, after an operation is complete.
     pub fn release(&mut self, value: Value) {
         if self.next(value).is_none() {
             self.leave(value);
@@ -106,7 +106,7 @@ impl Values {
         }
     }
 
-    /// A register for a value, and which value it is taken from.
+    /// A register for a value, and the value that it is taken from.
     pub fn allocate(&mut self, value: Value) -> (Register, Option<Value>) {
         let free = self.registers.iter().position(Option::is_none);
         let place = free.unwrap_or_else(|| self.last_needed());
@@ -119,7 +119,7 @@ impl Values {
         (register, evicted)
     }
 
-    /// A place in memory for a value.
+    /// A memory slot for a value.
     pub fn keep(&mut self, value: Value) -> u32 {
         let slot = self.free_slots.pop().unwrap_or_else(|| {
             self.slots += 1;
@@ -129,7 +129,7 @@ impl Values {
         slot
     }
 
-    /// Empties all registers, and gives what stood in them.
+    /// Frees all registers, and returns their values.
     pub fn clear(&mut self) -> impl Iterator<Item = (Register, Value)> + use<> {
         let none = vec![None; self.registers.len()];
         let registers = std::mem::replace(&mut self.registers, none);
@@ -158,7 +158,7 @@ fn registers(width: Width) -> usize {
     }
 }
 
-/// All registers but [`OWN`] in a row.
+/// All registers but [`OWN`].
 fn register_at(place: usize) -> Register {
     let place = place as u8;
     Register(place + u8::from(place >= OWN.0))

@@ -2,20 +2,20 @@
 
 use std::borrow::Cow;
 
-/// What there is to know of a model without evaluating it.
+/// Description of a model, available without evaluating it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct About {
-    /// Snake case.
+    /// Name, in snake case.
     pub name: Cow<'static, str>,
-    /// The sentence that describes it.
+    /// Description.
     pub doc: Cow<'static, str>,
-    /// In the order of `p`.
+    /// Parameters, in the order of `p`.
     pub parameters: Cow<'static, [Parameter]>,
-    /// In the order of `x`.
+    /// States, in the order of `x`.
     pub states: Cow<'static, [State]>,
-    /// In the order of `u`.
+    /// Inputs, in the order of `u`.
     pub inputs: Cow<'static, [Input]>,
-    /// In the order of `y`.
+    /// Outputs, in the order of `y`.
     pub outputs: Cow<'static, [Output]>,
     /// Harmonic excitations: each prescribed motion and each force input.
     pub excitations: Cow<'static, [Excitation]>,
@@ -29,20 +29,20 @@ pub struct About {
     pub contact: Option<ContactAbout>,
     /// Length of `constants`.
     pub constants: usize,
-    /// True where f and h are linear in x and u.
+    /// True if f and h are linear in x and u.
     pub linear: bool,
     /// The nonzeros of A, B, C and D.
     pub matrices: Cow<'static, [Entry]>,
     /// The nonzeros of their parameter Jacobians, with the parameter.
     pub sensitivities: Cow<'static, [(Entry, u16)]>,
-    /// The nonzeros of ∂f/∂p (block A's rows) and ∂h/∂p (block C's rows): is it an output, row, parameter.
+    /// Nonzeros of ∂f/∂p (rows as in A) and ∂h/∂p (rows as in C): true for an output, row, parameter.
     pub parameter_jacobian: Cow<'static, [(bool, u16, u16)]>,
-    /// For each excitation; empty for a nonlinear model.
+    /// Response layout of each excitation; empty for a nonlinear model.
     pub responses: Cow<'static, [ResponseLayout]>,
 }
 
 impl About {
-    /// The state whose rate a signal is: the velocity of a mass, for its acceleration.
+    /// The state whose rate is a signal: the velocity of a mass, for its acceleration.
     pub fn rate(&self, signal: &Signal) -> Option<usize> {
         let moves = |state: &State| state.axis == signal.axis && state.location == signal.location;
         let accelerates = signal.kind == SignalKind::Motion(Quantity::Acceleration);
@@ -50,7 +50,7 @@ impl About {
         self.states.iter().position(velocity)
     }
 
-    /// The names of the row and the column of a place in A, B, C or D.
+    /// Names of the row and the column of an entry of A, B, C or D.
     pub fn relates(&self, entry: &Entry) -> (&str, &str) {
         let (row, column) = (usize::from(entry.row), usize::from(entry.column));
         let row = match entry.matrix {
@@ -72,24 +72,24 @@ pub struct Parameter {
     pub name: Cow<'static, str>,
     /// Unit, as in `N s/m`.
     pub unit: Cow<'static, str>,
-    /// Sentence.
+    /// Description.
     pub doc: Cow<'static, str>,
-    /// Its default.
+    /// Default.
     pub default: Default,
     /// Bounds.
     pub range: Option<(f64, f64)>,
-    /// True where it is never estimated unless a campaign asks for it.
+    /// True if it is estimated only if a campaign asks for it.
     pub known: bool,
-    /// Set where it is the time since a run began.
+    /// Unit of time if it is the time since the start of a run; `None` for any other parameter.
     pub clock: Option<Clock>,
 }
 
-/// How the time since a run began is counted.
+/// Unit of the time since the start of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clock {
-    /// In s.
+    /// In seconds.
     Seconds,
-    /// In parts of the run: from 0 at its beginning to 1 at its end.
+    /// Relative to the run: from 0 at its start to 1 at its end.
     PartOfRun,
 }
 
@@ -100,26 +100,26 @@ pub enum Default {
     None,
     /// A value.
     Value(f64),
-    /// The value of another parameter, by its place.
+    /// The value of another parameter, by its position.
     Same(u16),
 }
 
 /// A state of the model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
-    /// `z_wheel`, `vz_wheel` or, for an inner state, `damper.f`.
+    /// Name: `z_wheel`, `vz_wheel` or, for an inner state, `damper.f`.
     pub name: Cow<'static, str>,
     /// Unit.
     pub unit: Cow<'static, str>,
-    /// The mass or node that moves, or the link of an inner state.
+    /// The moving mass or node, or the link of an inner state.
     pub location: Cow<'static, str>,
-    /// `z`, `x`.
+    /// Axis: `z`, `x`.
     pub axis: Cow<'static, str>,
-    /// What it is.
+    /// Kind.
     pub kind: StateKind,
 }
 
-/// What a state is.
+/// Kind of a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum StateKind {
     /// The position of a mass or node.
@@ -133,22 +133,22 @@ pub enum StateKind {
 /// An entry of `u`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Input {
-    /// `z_pad`, `vz_pad`, `az_pad`, `f_wheel_z`, `g`.
+    /// Name: `z_pad`, `vz_pad`, `az_pad`, `f_wheel_z`, `g`.
     pub name: Cow<'static, str>,
     /// Unit.
     pub unit: Cow<'static, str>,
-    /// `z`, `x`.
+    /// Axis: `z`, `x`.
     pub axis: Cow<'static, str>,
-    /// What it is.
+    /// Kind.
     pub kind: InputKind,
 }
 
-/// What an entry of `u` is.
+/// Kind of an entry of `u`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum InputKind {
-    /// The position, velocity or acceleration of the prescribed motion that is this excitation.
+    /// Position, velocity or acceleration of this excitation, a prescribed motion.
     Motion(u16, Quantity),
-    /// The force that is this excitation.
+    /// Force of this excitation.
     Force(u16),
     /// A uniform acceleration, m/s².
     Gravity,
@@ -157,9 +157,9 @@ pub enum InputKind {
 /// A harmonic excitation: unit displacement of a prescribed motion, or unit force.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Excitation {
-    /// `pad`, `f_wheel_z`.
+    /// Name: `pad`, `f_wheel_z`.
     pub name: Cow<'static, str>,
-    /// `z`, `x`.
+    /// Axis: `z`, `x`.
     pub axis: Cow<'static, str>,
     /// True for a force (response per N), false for a motion (response per m).
     pub force: bool,
@@ -176,18 +176,18 @@ pub enum Quantity {
     Acceleration,
 }
 
-/// What can be measured: where, along which axis, what.
+/// A measurable quantity: location, axis and kind.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Signal {
-    /// A mass, node, motion or link.
+    /// Location: a mass, node, motion or link.
     pub location: Cow<'static, str>,
-    /// `z`, `x`.
+    /// Axis: `z`, `x`.
     pub axis: Cow<'static, str>,
-    /// What.
+    /// Kind.
     pub kind: SignalKind,
 }
 
-/// What a signal measures.
+/// Kind of a signal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SignalKind {
     /// A motion of a mass, node or prescribed motion.
@@ -201,22 +201,22 @@ pub enum SignalKind {
 /// An entry of `y`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {
-    /// `z_body_acceleration`.
+    /// Name, such as `z_body_acceleration`.
     pub name: Cow<'static, str>,
     /// Unit.
     pub unit: Cow<'static, str>,
-    /// What it measures.
+    /// The signal.
     pub signal: Signal,
 }
 
 /// A named ratio of two signals, each an output or a prescribed motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
-    /// `pad_to_body`.
+    /// Name, such as `pad_to_body`.
     pub name: Cow<'static, str>,
-    /// Above the line.
+    /// Numerator.
     pub numerator: Signal,
-    /// Below the line.
+    /// Denominator.
     pub denominator: Signal,
 }
 
@@ -227,50 +227,50 @@ pub struct Link {
     pub name: Cow<'static, str>,
     /// Axis.
     pub axis: Cow<'static, str>,
-    /// The coordinates it acts between, in the order of its stretch.
+    /// The coordinates between which it acts, in the order of its stretch.
     pub ends: Cow<'static, [Cow<'static, str>]>,
-    /// The parameters on which its law depends, by their places, in that order.
+    /// The parameters of its law, by position, in that order.
     pub parameters: Cow<'static, [u16]>,
 }
 
 /// An inertia: a mass that moves along an axis, or a moment of inertia that turns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mass {
-    /// What moves.
+    /// The moving part.
     pub location: Cow<'static, str>,
-    /// `z`, `x`.
+    /// Axis: `z`, `x`.
     pub axis: Cow<'static, str>,
-    /// True for what turns.
+    /// True for a rotation.
     pub angle: bool,
-    /// The parameters of which it is made, by their places, in that order.
+    /// The parameters that determine it, by position, in that order.
     pub parameters: Cow<'static, [u16]>,
 }
 
-/// The tyre link that can roll over a profile: the one whose stretch joins a mass to a road.
+/// The tyre link that can roll over a profile: its stretch connects a mass to a road.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactAbout {
-    /// Its place in [`About::links`].
+    /// Its position in [`About::links`].
     pub link: u16,
-    /// The mass that it carries: places of its position and velocity in `x`, along the direction of the link and,
-    /// where that mass moves in a second direction too, along that one.
+    /// The mass that it carries: positions of its displacement and velocity in `x`, along the direction of the link and
+    /// along a second direction if the mass moves in one.
     pub axes: Cow<'static, [ContactAxis]>,
 }
 
 /// A direction in which the wheel of a rolling tyre moves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactAxis {
-    /// `z`, `x`.
+    /// Axis: `z`, `x`.
     pub axis: Cow<'static, str>,
-    /// Place of the wheel's position in `x`.
+    /// Position of the wheel's displacement in `x`.
     pub position: u16,
-    /// Place of its velocity.
+    /// Position of its velocity.
     pub velocity: u16,
 }
 
-/// A place in A, B, C or D.
+/// A nonzero entry of A, B, C or D.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Entry {
-    /// Which.
+    /// The matrix.
     pub matrix: Matrix,
     /// Row.
     pub row: u16,
@@ -279,19 +279,19 @@ pub struct Entry {
 }
 
 impl ResponseLayout {
-    /// How many rows its parameter Jacobian has, where it is wanted.
+    /// Number of rows of its parameter Jacobian, if it is wanted.
     pub fn slopes(&self, wanted: bool) -> usize {
         if wanted { self.jacobian.len() } else { 0 }
     }
 
-    /// How many rows there are in all, real and imaginary parts each for itself.
+    /// Number of all rows; real and imaginary parts are separate.
     pub fn rows(&self, with_jacobian: bool) -> usize {
         2 * (self.outputs.len() + self.slopes(with_jacobian))
     }
 }
 
 impl Entry {
-    /// A place in a matrix.
+    /// An entry of a matrix.
     pub const fn at(matrix: Matrix, row: u16, column: u16) -> Entry {
         Entry { matrix, row, column }
     }
@@ -307,11 +307,11 @@ pub enum Matrix {
     D,
 }
 
-/// The rows of the response to one excitation. What is not listed is zero at every frequency.
+/// Rows of the response to one excitation. Outputs that are not listed are zero at every frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponseLayout {
-    /// Outputs (places in `y`) that respond.
+    /// Responding outputs, by position in `y`.
     pub outputs: Cow<'static, [u16]>,
-    /// Nonzeros of the parameter Jacobian: place in `outputs` of this layout, parameter.
+    /// Nonzeros of the parameter Jacobian: position in `outputs` of this layout, parameter.
     pub jacobian: Cow<'static, [(u16, u16)]>,
 }

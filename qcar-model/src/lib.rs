@@ -1,8 +1,8 @@
-//! The seam between compiler and workbench: what a compiled axle model offers.
+//! Interface between compiler and workbench: the trait of a compiled axle model.
 //!
-//! Generated types and the run-time evaluator implement [`Model`]; the workbench knows nothing else of an axle.
-//! All quantities are SI. Slices have the lengths that [`About`] states; a shorter one is a caller's bug and panics
-//! once, at the top of the call, so that no bounds check is left in the straight-line code below it.
+//! Generated types and the run-time evaluator implement [`Model`]; the workbench uses nothing else of an axle. All
+//! quantities are SI. Slices have the lengths that [`About`] states. A shorter one is a bug of the caller and panics
+//! once, at the beginning of the call, so that the straight-line code after it needs no bounds checks.
 
 // The description of a model.
 mod about;
@@ -24,7 +24,8 @@ pub trait Model: Send + Sync {
     /// Names, units, sizes and sparsity.
     fn about(&self) -> &About;
 
-    /// Computes once what depends on the parameters alone: `p` (one value a parameter) to `constants`.
+    /// Computes once the constants that depend on the parameters alone: `p` (one value for each parameter) to
+    /// `constants`.
     fn prepare(&self, p: &[f64], constants: &mut [f64]);
 
     /// The equations of motion `dx = f(x, u)` for a prepared parameter set.
@@ -64,42 +65,42 @@ pub trait Model: Send + Sync {
         points.one_by_one(nonzeros, |x, u, nonzeros| self.parameter_jacobian(p, x, u, nonzeros));
     }
 
-    /// [`Model::prepare`] of several parameter sets at once, each row one value of all of them.
+    /// [`Model::prepare`] for several parameter sets at once; each row has one value of all of them.
     fn prepare_sets(&self, p: &[Lanes], constants: &mut [Lanes]) {
         one_by_one([p, &[], &[]], constants, |p, _, _, constants| {
             self.prepare(p, constants)
         });
     }
 
-    /// [`Model::derivative`] of several prepared parameter sets, each at a state and input of its own.
+    /// [`Model::derivative`] for several prepared parameter sets, each at its own state and input.
     fn derivative_sets(&self, constants: &[Lanes], x: &[Lanes], u: &[Lanes], dx: &mut [Lanes]) {
         one_by_one([constants, x, u], dx, |constants, x, u, dx| {
             self.derivative(constants, x, u, dx)
         });
     }
 
-    /// [`Model::outputs`] of several prepared parameter sets, each at a state and input of its own.
+    /// [`Model::outputs`] for several prepared parameter sets, each at its own state and input.
     fn outputs_sets(&self, constants: &[Lanes], x: &[Lanes], u: &[Lanes], y: &mut [Lanes]) {
         one_by_one([constants, x, u], y, |constants, x, u, y| {
             self.outputs(constants, x, u, y)
         });
     }
 
-    /// [`Model::matrices`] of several parameter sets, each at a state and input of its own. The bits are the same.
+    /// [`Model::matrices`] for several parameter sets, each at its own state and input. The bits are the same.
     fn matrices_sets(&self, p: &[Lanes], x: &[Lanes], u: &[Lanes], nonzeros: &mut [Lanes]) {
         one_by_one([p, x, u], nonzeros, |p, x, u, nonzeros| {
             self.matrices(p, x, u, nonzeros)
         });
     }
 
-    /// [`Model::sensitivities`] of several parameter sets, each at a state and input of its own.
+    /// [`Model::sensitivities`] for several parameter sets, each at its own state and input.
     fn sensitivities_sets(&self, p: &[Lanes], x: &[Lanes], u: &[Lanes], nonzeros: &mut [Lanes]) {
         one_by_one([p, x, u], nonzeros, |p, x, u, nonzeros| {
             self.sensitivities(p, x, u, nonzeros)
         });
     }
 
-    /// The frequency response of a linear model to one excitation, and where asked for its parameter Jacobian.
+    /// The frequency response of a linear model to one excitation, and its parameter Jacobian if wanted.
     ///
     /// See [`ResponseLayout`] for what is written where. A nonlinear model has no excitation to ask for.
     fn response(&self, excitation: usize, _constants: &[f64], _omega: &[f64], _into: ResponseMut<'_>) {

@@ -1,4 +1,4 @@
-//! Files that are read no further than a limit, so that no file can fill the memory, whatever it unpacks to.
+//! Reads files up to a limit, so that no file can fill the memory, even when unpacked.
 
 use std::fs::{self, File};
 use std::io::{self, BufReader, ErrorKind, Read};
@@ -9,19 +9,19 @@ use qcar_signals::read::{is_packed, unpacked};
 
 use crate::error::{InputError, Place, Problem};
 
-/// Bytes of a text or of an unpacked file that are read, unless [`VARIABLE`] says otherwise.
+/// Largest size of a text or an unpacked file, bytes, unless [`VARIABLE`] sets another.
 const MOST: u64 = 256 << 20;
 
-/// The same of a measured file that is not packed, and so cannot become larger than its disk.
+/// Largest size of a measured file that is not packed, whose size is limited by its disk.
 const MOST_PLAIN: u64 = 4 << 30;
 
 /// The environment variable with another limit, in MiB.
 const VARIABLE: &str = "QCAR_MAX_MIB";
 
-/// Opens a file that is neither a folder nor a device nor a pipe, which might never end.
+/// Opens a regular file: not a folder, a device or a pipe, which might never end.
 ///
 /// # Errors
-/// What the system says, and anything but a regular file.
+/// Fails with the error of the system, or if it is no regular file.
 pub fn open(path: &Path) -> io::Result<File> {
     let kind = fs::metadata(path)?.file_type();
     if kind.is_file() {
@@ -33,7 +33,7 @@ pub fn open(path: &Path) -> io::Result<File> {
     }
 }
 
-/// What comes from `inner`, with an error of [`ErrorKind::FileTooLarge`] where that goes beyond the limit.
+/// The content of `inner`, with an error of [`ErrorKind::FileTooLarge`] beyond the limit.
 pub fn limited<R: Read>(inner: R) -> impl Read {
     let left = limit().unwrap_or(MOST);
     Limited { inner, left }
@@ -45,10 +45,11 @@ fn limit() -> Option<u64> {
     Some(given.saturating_mul(1 << 20))
 }
 
-/// The content of a measured file, which gzip may have packed; what is not packed stays on the disk until it is wanted.
+/// The content of a measured file, unpacked if it is compressed by gzip; otherwise it stays on the disk until it is
+/// read.
 ///
 /// # Errors
-/// As [`open`]; more than 4 GiB, or more than 256 MiB unpacked, unless another limit is set; too little memory.
+/// Fails as [`open`] does, beyond 4 GiB or 256 MiB unpacked (unless another limit is set), or without enough memory.
 fn measured(path: &Path) -> io::Result<Content<'static>> {
     let file = open(path)?;
     if file.metadata()?.len() > limit().unwrap_or(MOST_PLAIN) {
@@ -63,7 +64,7 @@ fn measured(path: &Path) -> io::Result<Content<'static>> {
     Ok(Content::of_bytes(whole))
 }
 
-/// What to do about an error of [`measured`]: raise the limit, or what `else_do` says.
+/// Remedy for an error of [`measured`]: raise the limit, or `else_do`.
 fn remedy<'a>(error: &io::Error, else_do: &'a str) -> &'a str {
     match error.kind() {
         ErrorKind::FileTooLarge => "if the file is the right one, raise the limit",
@@ -72,10 +73,10 @@ fn remedy<'a>(error: &io::Error, else_do: &'a str) -> &'a str {
     }
 }
 
-/// The same for a reader of measured files, who is told what is wrong with it; `wrong_path` is what to do about a path that is wrong.
+/// The same for a reader of measured files, with its errors; `wrong_path` is the remedy for a wrong path.
 ///
 /// # Errors
-/// A file that cannot be read.
+/// Fails if the file cannot be read.
 pub fn measured_file(path: &Path, wrong_path: &str) -> Result<Content<'static>, InputError> {
     measured(path).map_err(|error| {
         let remedy = remedy(&error, wrong_path);
@@ -86,17 +87,17 @@ pub fn measured_file(path: &Path, wrong_path: &str) -> Result<Content<'static>, 
 /// A text file.
 ///
 /// # Errors
-/// As [`open`] and [`limited`], and bytes that are not UTF-8.
+/// Fails as [`open`] and [`limited`] do, or if the bytes are not UTF-8.
 pub fn text(path: &Path) -> io::Result<String> {
     let mut text = String::new();
     limited(open(path)?).read_to_string(&mut text)?;
     Ok(text)
 }
 
-/// A table that is read as it goes, unpacked where its name ends in `.gz`.
+/// A table that is read row by row, unpacked if its name ends in `.gz`.
 ///
 /// # Errors
-/// As [`open`]; the reader has those of [`limited`].
+/// Fails as [`open`] does; the reader fails as [`limited`] does.
 pub fn table(path: &Path) -> io::Result<Box<dyn Read>> {
     let plain = BufReader::new(open(path)?);
     Ok(match path.extension().is_some_and(|end| end == "gz") {
@@ -119,6 +120,6 @@ impl<R: Read> Read for Limited<R> {
 }
 
 fn too_large() -> io::Error {
-    let said = format!("more bytes than the limit allows; set {VARIABLE} to a larger number of MiB");
-    io::Error::new(ErrorKind::FileTooLarge, said)
+    let message = format!("more bytes than the limit allows; set {VARIABLE} to a larger number of MiB");
+    io::Error::new(ErrorKind::FileTooLarge, message)
 }

@@ -1,8 +1,8 @@
-//! The measurement as it lies on disk: a folder with `campaign.toml`, time histories, curves and roads.
+//! The measurement on disk: a folder with `campaign.toml`, time histories, curves and roads.
 //!
-//! [`Campaign::open`] reads the list and the header line of each file; the numbers of a run are read when asked for.
-//! Everything is SI. Whatever is wrong comes back as an [`InputError`](crate::error::InputError) that names the file,
-//! the place and the remedy.
+//! [`Campaign::open`] reads the manifest and the header line of each file; the samples of a run are read on request.
+//! All values are SI. Every error is an [`InputError`](crate::error::InputError) with the file, the place and the
+//! remedy.
 
 mod unit;
 // A file of columns of numbers.

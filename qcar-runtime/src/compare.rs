@@ -1,4 +1,5 @@
-//! A simulated cleat run compared with the measured one: the thesis's two metrics (section 3.6.2), and vibration comfort.
+//! Comparison of a simulated cleat run with the measured one: the two metrics of the thesis (section 3.6.2), and
+//! vibration comfort.
 
 mod comfort;
 mod errors;

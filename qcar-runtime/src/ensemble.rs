@@ -1,7 +1,7 @@
-//! Ensembles: a model at many parameter sets, each of them driven over the same rides and measured.
+//! Ensembles: metrics of a model at many parameter sets, all over the same rides.
 //!
-//! A [`Design`] says which sets. It knows each of them by its number alone, and a row of results depends on nothing else: so
-//! any part of an ensemble can be computed anywhere, by any number of threads, with the same bits.
+//! A [`Design`] determines each set from its number alone, and a row of results depends on nothing else. So any part of
+//! an ensemble can be computed anywhere, by any number of threads, with the same bits.
 
 // A random order of the strata.
 mod permutation;

@@ -1,4 +1,4 @@
-//! The errors with which every part of the workbench reports unusable input.
+//! Errors of unusable input.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -15,21 +15,21 @@ pub struct InputError {
     pub problems: Vec<Problem>,
 }
 
-/// One thing that is wrong with the input, where, and what to do about it.
+/// A problem of the input, its place, and a remedy.
 ///
 /// The texts are fragments of one sentence: `found "mm/s", expected "m/s"; convert the column and declare m/s`. Of a
 /// [refusal](Problem::refused), `found` is the whole sentence.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub struct Problem {
-    /// The file at fault, as it was opened.
+    /// The file as it was opened.
     pub file: PathBuf,
-    /// Where in it.
+    /// Place in the file.
     pub place: Place,
-    /// What is there.
+    /// What was found.
     pub found: String,
-    /// What belongs there.
+    /// What was expected.
     pub expected: String,
-    /// What to do about it.
+    /// Remedy.
     pub remedy: String,
 }
 
@@ -61,7 +61,7 @@ pub enum Place {
     Cell(u64, String),
     /// A whole column of a table, or a named item that has no line of its own.
     Name(String),
-    /// A channel of a measured file, and the moment (s).
+    /// A channel of a measured file, and the time (s).
     Channel(String, Option<f64>),
     /// A place in a measured file, in the words of its reader.
     Words(String),
@@ -86,7 +86,7 @@ impl fmt::Display for Place {
 }
 
 impl Place {
-    /// A key of a TOML file that begins so many bytes into its text.
+    /// A key of a TOML file, by its offset in bytes.
     pub fn in_text(text: &str, offset: usize, key: impl Into<String>) -> Self {
         let before = &text[..offset.min(text.len())];
         let line = before.matches('\n').count() + 1;
@@ -116,7 +116,7 @@ impl Problem {
 }
 
 impl Problem {
-    /// A problem in the words of an error that says itself what is expected and what to do.
+    /// A problem from an error that states what is expected and the remedy.
     pub fn refused(file: impl Into<PathBuf>, place: Place, what: &str, error: impl fmt::Display) -> Self {
         Problem::new(file, place, format!("{what}: {error}"), "", "")
     }
@@ -131,10 +131,10 @@ impl From<Problem> for InputError {
 }
 
 impl InputError {
-    /// `value` if nothing was wrong, else all of `problems`.
+    /// `value` without problems, otherwise an error with all `problems`.
     ///
     /// # Errors
-    /// Where `problems` is not empty.
+    /// Fails if `problems` is not empty.
     pub fn unless_empty<T>(problems: Vec<Problem>, value: Option<T>) -> Result<T, InputError> {
         match value {
             Some(value) if problems.is_empty() => Ok(value),

@@ -1,7 +1,7 @@
 //! The rig fit of thesis section 3.5.2: model parameters from measured transmissibilities.
 //!
-//! [`Setup::new`] checks a [`Plan`] against model and measurement; whatever is wrong comes out there. [`Setup::fit`]
-//! is total: it searches from several starts and returns a [`Fit`], also where little could be determined.
+//! [`Setup::new`] checks a [`Plan`] against model and measurement; and reports every error. [`Setup::fit`] cannot
+//! fail: it searches from several starts and returns a [`Fit`], even if the data determine little.
 
 // Measured ratios with their weights.
 pub mod observation;
@@ -29,14 +29,14 @@ pub mod profile;
 pub mod bootstrap;
 // Standard errors to expect from a measurement.
 mod forecast;
-// The information of a run about one sensor.
+// The measured or predicted motion of a place.
 mod record;
-// The same of a run that was not measured.
+// The same for a run that was not measured.
 mod supposed;
 // Sensors, runs and levels that could be measured in addition.
 mod candidate;
 // The information that each of them would add.
-pub mod prospect;
+pub mod design;
 
 pub use observation::{Level, Observation};
 pub use plan::{Plan, Weighting};
@@ -45,18 +45,18 @@ pub(crate) use search::starts;
 pub use setup::Setup;
 
 use crate::model::Model;
-use crate::progress::{Told, UNTOLD};
+use crate::progress::{NO_PROGRESS, OnProgress};
 use search::Search;
 
 impl<M: Model + ?Sized> Setup<'_, M> {
     /// Searches from all starts and reports the best minimum with its error bars.
     pub fn fit(&self) -> Fit {
-        self.fit_telling(UNTOLD)
+        self.fit_with_progress(NO_PROGRESS)
     }
 
-    /// The same; `told` hears search by search how far it is.
-    pub fn fit_telling(&self, told: Told<'_>) -> Fit {
-        let search = Search::run(self, told);
+    /// The same, with the progress reported to `on_progress` after each search.
+    pub fn fit_with_progress(&self, on_progress: OnProgress<'_>) -> Fit {
+        let search = Search::run(self, on_progress);
         let uncertainty = uncertainty::estimate(self, &search.best);
         report::report(self, &search, &uncertainty)
     }

@@ -1,12 +1,12 @@
-//! Gradients of kinematics-and-compliance curves (thesis section 3.4.4.1): stiffness, damping and friction to start from.
+//! Gradients of K&C curves (thesis section 3.4.4.1): start values of stiffness, damping and friction.
 //!
 //! A loop is the sum of a spring, a damper and a dry friction that changes sign with the direction of travel:
 //! `F = F0 + k x + c v + f sign(v)`. All are found at once by least squares that give outliers less weight (Huber),
 //! over the linear range: the middle half of the travel for a quasi-static cycle, which leaves out bump stops and the
 //! elastic reversal of the friction; where the velocity is above a tenth of its peak for a sine.
 //!
-//! A gradient is that between wheel and body: where a sub-frame yields under the load, it is that of both in series.
-//! [`value_for`] takes them apart with a model.
+//! A gradient is that between wheel and body. If a sub-frame yields under the load, it is that of both springs in
+//! series, and [`value_for`] determines one of them with a model.
 
 mod regression;
 // A model's own gradients on the K&C rig.
@@ -18,17 +18,17 @@ pub use rig::{Slope, gradient, parameter_for, value_for};
 
 use crate::campaign::DynamicCurve;
 
-/// What a quasi-static cycle says.
+/// Gradients of a slow cycle.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Cycle {
     /// Gradient of force over displacement, N/m.
     pub stiffness: Estimate,
-    /// Half the width of the loop, N. It holds what a damper gives at the speed of the cycle, too: 8 mm/s on a damper of
-    /// 2000 N s/m are 16 N.
+    /// Half the width of the loop, N. It includes the damper force at the speed of the cycle: 8 mm/s and 2000 N s/m
+    /// give 16 N.
     pub friction: Estimate,
 }
 
-/// What vertical sines say.
+/// Gradients of vertical sines.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Sine {
     /// Gradient of force over displacement, N/m.
@@ -42,11 +42,11 @@ pub struct Sine {
 /// Samples of a sine.
 #[derive(Clone, Copy, Debug)]
 pub struct SineSamples<'a> {
-    /// m.
+    /// Displacement, m.
     pub displacement: &'a [f64],
-    /// m/s.
+    /// Velocity, m/s.
     pub velocity: &'a [f64],
-    /// N.
+    /// Force, N.
     pub force: &'a [f64],
 }
 
@@ -60,7 +60,7 @@ impl<'a> From<&'a DynamicCurve> for SineSamples<'a> {
     }
 }
 
-/// Why a curve has no gradients.
+/// Reason why a curve has no gradients.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says it")]
 pub enum KcError {
@@ -77,7 +77,7 @@ pub enum KcError {
 }
 
 impl KcError {
-    /// What a curve with gradients has instead.
+    /// Requirement for a curve with gradients.
     pub fn expected(&self) -> String {
         match self {
             KcError::Lengths { .. } => "columns of one length".to_string(),
@@ -90,20 +90,20 @@ impl KcError {
     }
 }
 
-/// Share of the travel, in its middle, that counts as linear.
+/// Middle share of the travel that counts as linear.
 const LINEAR_SHARE: f64 = 0.5;
-/// Share of the peak velocity below which the friction of a sine is about to change sign.
+/// Share of the peak velocity below which the friction of a sine may be changing sign.
 const SLOW_SHARE: f64 = 0.1;
-/// The direction of travel is that over so many parts of the curve before and after a sample.
+/// Number of parts of a curve; the direction of travel is taken over one part before and one after a sample.
 const DIRECTION_PARTS: usize = 100;
-/// A slope of fewer standard errors is none.
+/// A slope with fewer standard errors is not significant.
 const CLEAR: f64 = 3.0;
 
-/// Stiffness and friction of a quasi-static cycle: displacement in m, force in N, one value a sample each.
+/// Stiffness and friction of a slow cycle: displacement in m, force in N, one value for each sample.
 ///
 /// # Errors
-/// Columns of unlike length, too few samples in the middle of the travel, travel in one direction only, a force that does
-/// not grow with the displacement.
+/// Fails if the columns differ in length, if there are too few samples in the middle of the travel, if the travel has
+/// one direction only, or if the force does not increase with the displacement.
 pub fn cycle(displacement: &[f64], force: &[f64]) -> Result<Cycle, KcError> {
     same_length(displacement, force)?;
     let (low, high) = extent(displacement);
@@ -120,10 +120,11 @@ pub fn cycle(displacement: &[f64], force: &[f64]) -> Result<Cycle, KcError> {
     Ok(Cycle { stiffness, friction })
 }
 
-/// Stiffness, damping and friction of one or several sines of one suspension, each with a mean force of its own.
+/// Stiffness, damping and friction of one or several sines of one suspension, each with its own mean force.
 ///
 /// # Errors
-/// Columns of unlike length, too few samples away from the reversals, travel in one direction only.
+/// Fails if the columns differ in length, if there are too few samples away from the reversals, or if the travel has
+/// one direction only.
 pub fn sines(runs: &[SineSamples<'_>]) -> Result<Sine, KcError> {
     let mut rows: Vec<[f64; 4]> = Vec::new();
     for run in runs {
@@ -139,7 +140,7 @@ pub fn sines(runs: &[SineSamples<'_>]) -> Result<Sine, KcError> {
     })
 }
 
-/// Displacement, velocity, direction and force where the wheel moves.
+/// Displacement, velocity, direction and force while the wheel moves.
 fn moving(run: &SineSamples<'_>) -> Vec<[f64; 4]> {
     let (low, high) = extent(run.velocity);
     let slow = SLOW_SHARE * high.max(-low);
@@ -156,7 +157,7 @@ fn moving(run: &SineSamples<'_>) -> Vec<[f64; 4]> {
         .collect()
 }
 
-/// The rows less their mean: the same least squares as with a mean force to be found.
+/// The rows minus their mean: the same least squares as with an unknown mean force.
 fn centred(rows: &[[f64; 4]]) -> Vec<[f64; 4]> {
     let mean = |column: usize| rows.iter().map(|row| row[column]).sum::<f64>() / rows.len() as f64;
     let means = [mean(0), mean(1), mean(2), mean(3)];
@@ -165,7 +166,7 @@ fn centred(rows: &[[f64; 4]]) -> Vec<[f64; 4]> {
         .collect()
 }
 
-/// Whether the displacement grows (1) or falls (-1) around a sample.
+/// 1 if the displacement increases around a sample, -1 if it decreases.
 fn direction(displacement: &[f64], i: usize) -> f64 {
     let reach = (displacement.len() / DIRECTION_PARTS).max(1);
     let last = displacement.len() - 1;

@@ -32,17 +32,17 @@ pub trait Problem {
 
     /// Writes `r(x)` and its Jacobian, column after column: `jacobian[column * residuals + row]`.
     ///
-    /// Both at once, since nearly every step is accepted and most models share work between the two.
+    /// Both at once, since nearly every step is accepted and most models share work between them.
     fn evaluate(&mut self, x: &[f64], residual: &mut [f64], jacobian: &mut [f64]);
 
-    /// Writes `r(x)` alone and says true, where that costs much less than both: then a step that is refused, or the last,
-    /// costs no Jacobian.
+    /// Writes `r(x)` alone and returns true, if that is much cheaper. A refused step, or the last one, then needs no
+    /// Jacobian.
     fn evaluate_residual(&mut self, _x: &[f64], _residual: &mut [f64]) -> bool {
         false
     }
 }
 
-/// An interval for each variable; infinite where there is none. Each lower bound lies below its upper bound.
+/// An interval for each variable, infinite without a bound. Each lower bound is below its upper bound.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bounds {
     /// Lower ends.
@@ -52,7 +52,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// No bounds at all.
+    /// No bounds.
     pub fn none(variables: usize) -> Self {
         Self {
             lower: vec![f64::NEG_INFINITY; variables],
@@ -61,16 +61,16 @@ impl Bounds {
     }
 }
 
-/// When to stop. Every tolerance is relative, so none depends on units.
+/// Stopping criteria. Every tolerance is relative and does not depend on units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Largest cosine between the residual and a Jacobian column whose variable is free to move.
+    /// Largest cosine between the residual and the Jacobian column of a free variable.
     pub gradient: f64,
-    /// Reduction of the cost, foreseen and made, relative to the cost.
+    /// Predicted and actual reduction of the cost, relative to the cost.
     pub cost: f64,
     /// Length of the step relative to the length of `x`, both in scaled variables.
     pub step: f64,
-    /// Evaluations of the residual at places of their own.
+    /// Most evaluations of the residual.
     pub evaluations: usize,
 }
 
@@ -85,26 +85,26 @@ impl Default for Options {
     }
 }
 
-/// Why the search stopped.
+/// Stopping reason.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stop {
-    /// The residual is orthogonal to whatever the free variables can change: a stationary point.
+    /// The residual is orthogonal to all changes by the free variables: a stationary point.
     Gradient,
-    /// The cost no longer falls.
+    /// The cost no longer decreases.
     Cost,
     /// The step no longer changes the variables.
     Step,
-    /// There is no variable to move.
+    /// There are no variables.
     NothingToFit,
-    /// The evaluations were used up before anything settled.
+    /// The limit of evaluations was reached before convergence.
     Evaluations,
-    /// The residual or its Jacobian is not a finite number, at the start or wherever the search tried to go.
+    /// The residual or its Jacobian is not finite, at the start or at every attempted step.
     NotFinite,
 }
 
 impl Stop {
-    /// True where the search ended at a minimum, as far as its tolerances can tell.
+    /// True if the search ended at a minimum within its tolerances.
     pub fn converged(self) -> bool {
         matches!(self, Stop::Gradient | Stop::Cost | Stop::Step | Stop::NothingToFit)
     }
@@ -122,30 +122,30 @@ impl Stop {
     }
 }
 
-/// Where the search ended.
+/// Result of a search.
 #[derive(Clone, Debug)]
 pub struct Outcome {
     /// The variables, within their bounds.
     pub x: Vec<f64>,
-    /// `½ ‖r‖²` there.
+    /// `½ ‖r‖²` at these variables.
     pub cost: f64,
     /// `½ ‖r‖²` at the start.
     pub start_cost: f64,
-    /// The residual there.
+    /// Residual at these variables.
     pub residual: DVector<f64>,
-    /// Its Jacobian there; where the evaluations were used up, maybe still that of the place before.
+    /// Jacobian at these variables; if the evaluations were used up, possibly that of the point before.
     pub jacobian: DMatrix<f64>,
-    /// For each variable: −1 on its lower bound, +1 on its upper bound, 0 between.
+    /// For each variable: −1 at its lower bound, +1 at its upper bound, 0 between.
     pub at_bound: Vec<i8>,
-    /// Why it stopped.
+    /// Stopping reason.
     pub stop: Stop,
-    /// Evaluations of residual and Jacobian.
+    /// Number of evaluations of residual and Jacobian.
     pub evaluations: usize,
-    /// Steps taken.
+    /// Number of steps.
     pub iterations: usize,
 }
 
-/// Searches for a local minimum from `start`, which is moved into the bounds where it lies outside.
+/// Searches for a local minimum from `start`, which is moved into the bounds first.
 pub fn minimize<P: Problem + ?Sized>(problem: &mut P, start: &[f64], bounds: &Bounds, options: &Options) -> Outcome {
     let mut search = Search::new(problem, start, bounds);
     let stop = search.run(options);
@@ -158,7 +158,7 @@ struct Point {
     residual: DVector<f64>,
     jacobian: DMatrix<f64>,
     cost: f64,
-    /// True where the Jacobian is that of this point.
+    /// True if the Jacobian is that of this point.
     is_linearised: bool,
 }
 
@@ -183,7 +183,7 @@ impl Point {
         self.is_linearised = true;
     }
 
-    /// Evaluates the residual, and its Jacobian where that comes with it.
+    /// Evaluates the residual, and the Jacobian if both are computed together.
     fn look<P: Problem + ?Sized>(&mut self, problem: &mut P) {
         if problem.evaluate_residual(self.x.as_slice(), self.residual.as_mut_slice()) {
             self.cost = 0.5 * self.residual.norm_squared();
@@ -194,7 +194,7 @@ impl Point {
     }
 }
 
-/// The state of a search. `trial` is a second point so that nothing is allocated for a rejected step.
+/// State of a search. `trial` is a second point, so that a rejected step needs no allocation.
 struct Search<'a, P: ?Sized> {
     problem: &'a mut P,
     bounds: &'a Bounds,
@@ -251,7 +251,7 @@ impl<'a, P: Problem + ?Sized> Search<'a, P> {
         }
     }
 
-    /// Shrinks the trust region until a step lowers the cost, and takes that step.
+    /// Shrinks the trust region until a step lowers the cost, then takes it.
     fn iterate(&mut self, interior: &Interior, optimality: f64, options: &Options) -> Option<Stop> {
         let model = Model::new(interior, &self.normal);
         loop {
@@ -277,11 +277,11 @@ impl<'a, P: Problem + ?Sized> Search<'a, P> {
         }
     }
 
-    /// Moves to the trial point, unless its linearisation holds a value that is not finite.
+    /// Moves to the trial point, unless its linearisation is not finite.
     fn accept(&mut self, options: &Options) -> bool {
         std::mem::swap(&mut self.here, &mut self.trial);
         if !self.here.is_linearised && self.evaluations >= options.evaluations {
-            // Nothing goes on from here.
+            // No step can follow from here.
             std::mem::swap(&mut self.here.jacobian, &mut self.trial.jacobian);
             return true;
         }
@@ -302,7 +302,7 @@ impl<'a, P: Problem + ?Sized> Search<'a, P> {
         self.evaluations += 1;
     }
 
-    /// The tests of Moré (1978), section 8, on what the step promised and what it did.
+    /// The tests of Moré (1978), section 8, on the predicted and the actual reduction.
     fn settled(&self, step: &Step, interior: &Interior, cost: f64, reduction: f64, options: &Options) -> Option<Stop> {
         let ratio = reduction / step.predicted;
         if reduction.abs() <= options.cost * cost && step.predicted <= options.cost * cost && ratio <= 2.0 {

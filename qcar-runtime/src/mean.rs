@@ -1,4 +1,4 @@
-//! Means and root mean squares; zero of nothing.
+//! Means and root mean squares. Without values they are zero, except [`rms_or_nan`].
 
 use std::borrow::Borrow;
 
@@ -15,12 +15,21 @@ pub fn mean_square(values: impl IntoIterator<Item = impl Borrow<f64>>) -> f64 {
     mean(values.into_iter().map(|value| value.borrow() * value.borrow()))
 }
 
-/// The root of the mean square.
+/// The root mean square.
 pub fn rms(values: impl IntoIterator<Item = impl Borrow<f64>>) -> f64 {
     mean_square(values).sqrt()
 }
 
-/// The root of the mean square about the mean.
+/// The root mean square; NaN without values.
+pub fn rms_or_nan(values: impl IntoIterator<Item = impl Borrow<f64>>) -> f64 {
+    let mut values = values.into_iter().peekable();
+    match values.peek() {
+        Some(_) => rms(values),
+        None => f64::NAN,
+    }
+}
+
+/// The root mean square about the mean.
 pub fn deviation(values: &[f64]) -> f64 {
     let mean = mean(values);
     rms(values.iter().map(|value| value - mean))
@@ -35,5 +44,6 @@ mod tests {
         assert_eq!((rms([3.0, -3.0]), deviation(&[3.0, 3.0])), (3.0, 0.0));
         assert_eq!((mean([1.0, 2.0, 6.0]), deviation(&[-1.0, 1.0])), (3.0, 1.0));
         assert_eq!(rms([0.0; 0]), 0.0);
+        assert!(rms_or_nan([0.0; 0]).is_nan());
     }
 }

@@ -12,18 +12,18 @@ use crate::matrices::{at_rest, dense};
 use crate::model::{Matrix, Model, StateKind};
 use crate::response::parameters::Values;
 
-/// A natural vibration.
+/// A mode.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
     /// Undamped natural frequency `|λ| / 2π`, Hz.
     pub frequency: f64,
     /// Damping ratio `-Re λ / |λ|`, below 1.
     pub damping: f64,
-    /// The position of everything that moves in it; the largest is 1.
+    /// Motion of every point; the largest amplitude is 1.
     pub shape: Vec<Part>,
 }
 
-/// What a point does in a mode.
+/// Motion of a point in a mode.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
     /// The mass or node.
@@ -34,29 +34,29 @@ pub struct Part {
     pub amplitude: Complex<f64>,
 }
 
-/// Modes below this frequency (Hz) are the axle drifting off as a whole, which nothing holds along the road.
+/// Frequency below which a mode counts as a rigid motion of the axle along the road, Hz.
 const RIGID: f64 = 0.01;
 
-/// Points that move less than this share of the largest stand still.
+/// Points with an amplitude below this share of the largest count as at rest.
 const STILL: f64 = 1e-6;
 
-/// The vibrations of a model, lowest frequency first. What decays without vibrating is left out.
+/// The modes of a model, lowest frequency first. Eigenvalues without oscillation are left out.
 pub fn modes(model: &(impl Model + ?Sized), values: &Values) -> Vec<Mode> {
     let a = dynamics(model, values.as_slice());
     let roots = vibrations(&a).into_iter();
     roots.map(|root| mode(model, &a, root)).collect()
 }
 
-/// Frequency (Hz) and damping ratio of each of them, without their shapes.
+/// Frequency (Hz) and damping ratio of each mode, without its shape.
 pub fn frequencies(model: &(impl Model + ?Sized), values: &Values) -> Vec<(f64, f64)> {
     let roots = vibrations(&dynamics(model, values.as_slice())).into_iter();
     roots.map(|root| (frequency(root), damping(root))).collect()
 }
 
-/// The eigenvalue of each vibration with its imaginary part above zero, lowest frequency first.
+/// Eigenvalue of each mode with positive imaginary part, lowest frequency first.
 pub(crate) fn vibrations(a: &DMatrix<f64>) -> Vec<Complex<f64>> {
     let vibrates = |root: &Complex<f64>| root.im > 1e-6 * root.norm() && root.norm() > TAU * RIGID;
-    // Nothing moves in a model without a mass, and what is not a number has no Schur form to wait for.
+    // A model without masses has no modes, and the Schur form of a matrix with NaN would not converge.
     if a.is_empty() || a.iter().any(|value| !value.is_finite()) {
         return Vec::new();
     }
@@ -74,9 +74,9 @@ fn damping(root: Complex<f64>) -> f64 {
     -root.re / root.norm()
 }
 
-/// Modes of two models that are the same vibration, by their places in both lists; each mode is in one pair at most.
+/// Pairs of modes of two models that correspond, by their positions in both lists; each mode is in at most one pair.
 ///
-/// The likeliest pairs are taken first, down to one half, below which a mode is hardly the same any more.
+/// The most similar pairs are chosen first, down to a similarity of one half.
 pub fn pairs(first: &[Mode], second: &[Mode]) -> Vec<(usize, usize)> {
     let mut points = BTreeMap::new();
     let [one, other] = [first, second].map(|modes| {
@@ -169,7 +169,7 @@ fn mode(model: &(impl Model + ?Sized), a: &DMatrix<f64>, root: Complex<f64>) -> 
     }
 }
 
-/// The vector that `A - λ` takes to the smallest: inverse iteration from a shifted root.
+/// The eigenvector of the smallest eigenvalue of `A - λ`, by inverse iteration with a shift.
 pub(crate) fn eigenvector(a: &DMatrix<f64>, root: Complex<f64>) -> DVector<Complex<f64>> {
     const SHIFT: f64 = 1e-9;
     const STEPS: usize = 3;

@@ -4,33 +4,34 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-/// Is told how many parts of the work are done, and of how many; from any thread.
-pub type Told<'a> = &'a (dyn Fn(usize, usize) + Sync);
+/// Receives the number of completed parts of some work and the number of all parts, from any thread.
+pub type OnProgress<'a> = &'a (dyn Fn(usize, usize) + Sync);
 
-/// For those who do not care.
-pub const UNTOLD: Told<'static> = &|_, _| ();
+/// Ignores the progress.
+pub const NO_PROGRESS: OnProgress<'static> = &|_, _| ();
 
-/// Does `work` on all items in parallel, and tells at the start and after each; the results are in the order of the items.
-pub fn map<T: Sync, U: Send>(items: &[T], told: Told<'_>, work: impl Fn(&T) -> U + Sync + Send) -> Vec<U> {
-    map_with(items, told, || (), |(), item| work(item))
+/// Does `work` on all items in parallel and reports the progress at the start and after each item. The results are in the
+/// order of the items.
+pub fn map<T: Sync, U: Send>(items: &[T], on_progress: OnProgress<'_>, work: impl Fn(&T) -> U + Sync + Send) -> Vec<U> {
+    map_with(items, on_progress, || (), |(), item| work(item))
 }
 
-/// The same with `room`, which a thread keeps from one item to the next and which changes no result.
+/// The same with a buffer from `buffer` that a thread keeps from one item to the next. It must not change any result.
 pub fn map_with<T: Sync, R, U: Send>(
     items: &[T],
-    told: Told<'_>,
-    room: impl Fn() -> R + Sync + Send,
+    on_progress: OnProgress<'_>,
+    buffer: impl Fn() -> R + Sync + Send,
     work: impl Fn(&mut R, &T) -> U + Sync + Send,
 ) -> Vec<U> {
     let done = AtomicUsize::new(0);
-    told(0, items.len());
-    let one = |room: &mut R, item| {
-        let result = work(room, item);
-        told(done.fetch_add(1, Ordering::Relaxed) + 1, items.len());
+    on_progress(0, items.len());
+    let one = |buffer: &mut R, item| {
+        let result = work(buffer, item);
+        on_progress(done.fetch_add(1, Ordering::Relaxed) + 1, items.len());
         result
     };
-    // Nobody waits for the others once one has panicked, which is how work is given up.
-    items.par_iter().map_init(room, one).panic_fuse().collect()
+    // A panic cancels the work, so the other items need not be completed.
+    items.par_iter().map_init(buffer, one).panic_fuse().collect()
 }
 
 #[cfg(test)]
@@ -38,14 +39,14 @@ mod tests {
     use std::sync::Mutex;
 
     #[test]
-    fn every_part_is_told_once_and_results_keep_their_order() {
-        let heard = Mutex::new(Vec::new());
-        let squares = super::map(&[3, 1, 2], &|done, of| heard.lock().unwrap().push((done, of)), |n| {
+    fn every_part_is_reported_once_and_results_keep_their_order() {
+        let received = Mutex::new(Vec::new());
+        let squares = super::map(&[3, 1, 2], &|done, of| received.lock().unwrap().push((done, of)), |n| {
             n * n
         });
         assert_eq!(squares, [9, 1, 4]);
-        let mut heard = heard.into_inner().unwrap();
-        heard.sort_unstable();
-        assert_eq!(heard, [(0, 3), (1, 3), (2, 3), (3, 3)]);
+        let mut received = received.into_inner().unwrap();
+        received.sort_unstable();
+        assert_eq!(received, [(0, 3), (1, 3), (2, 3), (3, 3)]);
     }
 }

@@ -12,7 +12,7 @@ impl SplitMix {
         Self(seed)
     }
 
-    /// Numbers of their own for each `stream` of a seed, so that any of them can be had without the others.
+    /// Independent numbers for each `stream` of a seed.
     pub fn stream(seed: u64, stream: u64) -> Self {
         Self(Self(seed).bits() ^ Self(!stream).bits())
     }
@@ -22,13 +22,13 @@ impl SplitMix {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// A whole number below `count`, which is at least one.
+    /// A whole number below `count`, which must be at least one.
     pub fn below(&mut self, count: usize) -> usize {
         ((self.uniform() * count as f64) as usize).min(count - 1)
     }
 
-    /// Points of a unit cube, of which each stands alone in its slice along every axis: a Latin hypercube (McKay, Beckman and
-    /// Conover, Technometrics 21, 1979).
+    /// A Latin hypercube: points of a unit cube, one in each slice along every axis (McKay, Beckman and Conover,
+    /// Technometrics 21, 1979).
     pub fn hypercube(&mut self, points: usize, axes: usize) -> Vec<Vec<f64>> {
         let mut all = vec![vec![0.0; axes]; points];
         for axis in 0..axes {

@@ -1,8 +1,8 @@
-//! The road under a rolling tyre: a line of straight pieces and vertical steps that goes on flat beyond its ends.
+//! The road under a rolling tyre: straight pieces and vertical steps, level beyond its ends.
 //!
-//! Curved profiles come as samples, dense enough for a chord to stand for the curve between two of them.
-//! Everything that a contact needs of the ground between two points is the difference of two prefix integrals,
-//! so a query costs the same for a plank as for a measured road of a million samples.
+//! Curved profiles are sampled so densely that a chord may replace the curve between two samples. A contact needs
+//! integrals over the ground between two points, which are differences of two prefix integrals. So a query costs the
+//! same for a plank and for a measured road of a million samples.
 
 mod bounds;
 mod integrals;
@@ -16,7 +16,7 @@ pub(crate) use integrals::{Integrals, Moments};
 pub use iso8608::{Class, Random};
 pub use shapes::Shape;
 
-/// Height of the ground over the distance along it, for ever flat beyond the first and the last point.
+/// Height of the ground over distance, level beyond the first and the last point.
 #[derive(Clone, Debug)]
 pub struct Road {
     vertices: Vec<[f64; 2]>,
@@ -35,7 +35,7 @@ pub(crate) struct Segment {
     pub end: f64,
 }
 
-/// Why something is not a road that a tyre can roll over.
+/// Reason why something is no road for a tyre.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says it")]
 pub enum RoadError {
@@ -74,10 +74,10 @@ pub enum RoadError {
 }
 
 impl Road {
-    /// A road through points `[x, z]` in m, taken as they are: two points at one x are a vertical step.
+    /// A road through points `[x, z]` in m, used unchanged: two points at one x are a vertical step.
     ///
     /// # Errors
-    /// Fewer than two points, a number that is not finite, x that decreases.
+    /// Fails if there are fewer than two points, if a number is not finite, or if x decreases.
     pub fn from_points(points: &[[f64; 2]]) -> Result<Self, RoadError> {
         samples::check_points(points)?;
         Ok(Self::through(samples::simplify(points, samples::EXACT)))
@@ -85,17 +85,17 @@ impl Road {
 
     /// A road through samples of x (m), height z (m) and slope of the segment to the right of each sample.
     ///
-    /// Where the slope of a sample leads to the next one (within 0.1 of the slope of the chord) the road follows the
-    /// chord; where it does not, the road follows the slope and then steps vertically at the next sample. Samples on
-    /// one line within 1 µm, the resolution of such files, become one segment.
+    /// If the slope of a sample leads to the next one (within 0.1 of the slope of the chord), the road follows the
+    /// chord. Otherwise it follows the slope, then steps vertically at the next sample. Samples on one line within 1
+    /// µm, the resolution of such files, become one segment.
     ///
     /// # Errors
-    /// Columns of unlike length, too few samples, a number that is not finite, x that decreases, a slope that
-    /// contradicts the heights at two samples in succession, and a road rougher than its sampling: one that changes by
-    /// more than a quarter of its standard deviation (root mean square) when each sample is replaced by the line
-    /// through its neighbours. A sine has that share at about nine samples a wavelength. Few points at uneven distances, whose
-    /// slopes lead exactly from one to the next, are the corners of a profile and not samples of a curve: a cleat may be given by
-    /// these.
+    /// Fails if columns differ in length, if there are too few samples, if a number is not finite, if x decreases, if a
+    /// slope contradicts the heights at two successive samples, or if the road is too rough for its sampling: it
+    /// changes by more than a quarter of its standard deviation (RMS) if each sample is replaced by the line through
+    /// its neighbours, which for a sine is about nine samples per wavelength. A few points at uneven distances, whose
+    /// slopes lead exactly from one to the next, are corners of a profile and not samples of a curve; a cleat may be
+    /// given by them.
     pub fn from_samples(x: &[f64], z: &[f64], slope: &[f64]) -> Result<Self, RoadError> {
         let points = samples::points(x, z, slope)?;
         if !samples::are_corners(x, &points, slope) {
@@ -107,7 +107,7 @@ impl Road {
     /// A shape after `run_in` metres of flat road, followed by flat road.
     ///
     /// # Errors
-    /// A dimension of the shape or a run-in that is not positive.
+    /// Fails if a dimension of the shape or the run-in is not positive.
     pub fn from_shape(shape: &Shape, run_in: f64) -> Result<Self, RoadError> {
         Self::from_points(&shape.points(run_in)?)
     }
@@ -115,7 +115,7 @@ impl Road {
     /// A random road of ISO 8608.
     ///
     /// # Errors
-    /// A length or spacing that does not suit the standard's band of wavelengths.
+    /// Fails if a length or spacing does not suit the band of wavelengths of the standard.
     pub fn from_random(random: &Random) -> Result<Self, RoadError> {
         Self::from_points(&random.points()?)
     }
@@ -139,7 +139,7 @@ impl Road {
         Self::through(self.vertices.iter().map(|&[x, z]| [x - first, z]).collect())
     }
 
-    /// The same road seen by a wheel that rolls the other way: x becomes -x.
+    /// The same road for a wheel that rolls the other way: x becomes -x.
     pub fn mirrored(&self) -> Self {
         Self::through(self.vertices.iter().rev().map(|&[x, z]| [-x, z]).collect())
     }
@@ -149,13 +149,13 @@ impl Road {
         &self.vertices
     }
 
-    /// Height in m at `x`; above a step that of its right side.
+    /// Height in m at `x`; at a step, that on its right side.
     pub fn height(&self, x: f64) -> f64 {
         let segment = self.segments[self.segment_at(x)];
         segment.origin[1] + (x - segment.origin[0]) * segment.along[1] / segment.along[0]
     }
 
-    /// Slope at `x`; at a vertex that of its right side.
+    /// Slope at `x`; at a vertex, that on its right side.
     pub fn slope(&self, x: f64) -> f64 {
         let [dx, dz] = self.segments[self.segment_at(x)].along;
         dz / dx
@@ -166,12 +166,12 @@ impl Road {
         [self.vertices[0][0], self.vertices[self.vertices.len() - 1][0]]
     }
 
-    /// Where the road steps vertically, m; a solver starts a new step there.
+    /// Positions of vertical steps, m, at which a solver starts a new step.
     pub fn steps(&self) -> impl Iterator<Item = f64> {
         self.vertices.windows(2).filter(|w| w[0][0] == w[1][0]).map(|w| w[0][0])
     }
 
-    /// Where the ground turns sharply, m: steps, kinks, but not the small turns between the chords of a curve.
+    /// Positions of steps and kinks, m, without the small turns between the chords of a curve.
     pub(crate) fn edges(&self) -> impl Iterator<Item = [f64; 2]> {
         /// Sine of the least turn, either way.
         const SHARP: f64 = 0.02;
@@ -181,10 +181,10 @@ impl Road {
         sharp.map(|(_, vertex)| *vertex)
     }
 
-    /// Refuses a run that would leave the described road.
+    /// Refuses a run that would leave the road.
     ///
     /// # Errors
-    /// [`RoadError::TooShort`] where the road ends before `needed` (m).
+    /// [`RoadError::TooShort`] if the road ends before `needed` (m).
     pub fn check_reaches(&self, needed: f64) -> Result<(), RoadError> {
         let end = self.extent()[1];
         if needed <= end {
@@ -194,7 +194,7 @@ impl Road {
         }
     }
 
-    /// The piece over which `x` lies; piece `k` lies between vertices `k - 1` and `k`.
+    /// The piece at `x`; piece `k` is between vertices `k - 1` and `k`.
     #[inline]
     pub(crate) fn segment_at(&self, x: f64) -> usize {
         self.index.vertices_up_to(&self.vertices, x)
@@ -205,14 +205,14 @@ impl Road {
         &self.segments[k]
     }
 
-    /// True where nothing but piece `k` lies below the circle.
+    /// True if no other piece than `k` is below the circle.
     #[inline]
     pub(crate) fn carries(&self, k: usize, circle: &Circle) -> bool {
         let ([from, to], [x, _]) = (self.span(k), circle.centre);
         from <= x - circle.radius && x + circle.radius <= to
     }
 
-    /// Where piece `k` begins and ends, m: it may go on for ever.
+    /// Start and end of piece `k`, m; the outer pieces are infinite.
     #[inline]
     pub(crate) fn span(&self, k: usize) -> [f64; 2] {
         let before = k.checked_sub(1).and_then(|k| self.vertices.get(k));
@@ -244,7 +244,7 @@ impl Road {
     }
 }
 
-/// All else of a road follows from its points.
+/// Computes all other data of a road from its points.
 impl PartialEq for Road {
     fn eq(&self, other: &Self) -> bool {
         self.vertices == other.vertices

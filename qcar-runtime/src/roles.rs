@@ -1,4 +1,4 @@
-//! Which part of a model is the wheel, its road and its body: what tests are about, whatever a model calls them.
+//! The wheel, its road and the body of a model, which tests refer to whatever their names.
 //!
 //! The **wheel** is the mass on the tyre, the **road** what the tyre stands on. The **body** is what a K&C rig holds while
 //! it moves the wheel: the only other mass that moves along the tyre's axis or, among several, the one whose mass is what the
@@ -13,13 +13,13 @@ use crate::model::{About, Link, Mass, StateKind};
 /// The parts of a model on one tyre.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Roles {
-    /// Along which the tyre pushes: `z`.
+    /// Axis of the tyre force: `z`.
     pub axis: String,
     /// The mass that the tyre carries; a campaign may name another, such as the hub in a tyre with a belt.
     pub wheel: String,
     /// The prescribed motion under the tyre.
     pub road: String,
-    /// The masses along that axis by the number of links between them and the road, the mass on the tyre first.
+    /// The masses along that axis, in the order of the number of links to the road; the mass on the tyre first.
     pub masses: Vec<String>,
     body: Result<String, RoleError>,
 }
@@ -27,13 +27,13 @@ pub struct Roles {
 /// The masses of a model on a K&C rig.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OnRig {
-    /// What is moved.
+    /// The mass that is moved.
     pub wheel: String,
-    /// What is held.
+    /// The mass that is held.
     pub body: String,
 }
 
-/// Why a part of a model is not known.
+/// Reasons why a part of a model is unknown.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[expect(missing_docs, reason = "the message says it")]
 pub enum RoleError {
@@ -60,10 +60,10 @@ pub enum RoleError {
 }
 
 impl Roles {
-    /// Reads them from a model's structure, and from what a campaign names.
+    /// Determines the roles from the structure of a model and from the names in a campaign.
     ///
     /// # Errors
-    /// A model without a tyre or with several, and a name that is none of its masses.
+    /// Fails if the model has no tyre or several, or if a name is none of its masses.
     pub fn of(about: &About, named: &RoleNames) -> Result<Self, RoleError> {
         let model = || about.name.to_string();
         let contact = about.contact.as_ref().filter(|contact| !contact.axes.is_empty());
@@ -96,17 +96,17 @@ impl Roles {
         })
     }
 
-    /// The masses along that axis in the order in which they feel a cleat: the wheel, then all others from the tyre on. The
-    /// first that was measured aligns a record.
+    /// The masses along that axis in the order in which a cleat excites them: the wheel, then all others from the tyre
+    /// upwards. The first that was measured aligns a record.
     pub fn feeling(&self) -> impl Iterator<Item = &str> {
         let others = self.masses.iter().filter(|mass| **mass != self.wheel);
         std::iter::once(&self.wheel).chain(others).map(String::as_str)
     }
 
-    /// What a K&C rig moves and holds.
+    /// The masses on a K&C rig.
     ///
     /// # Errors
-    /// Where the structure leaves the body open and the campaign does not name it.
+    /// Fails if the structure does not determine the body and the campaign does not name it.
     pub fn on_rig(&self) -> Result<OnRig, RoleError> {
         let body = self.body.clone()?;
         let wheel = self.wheel.clone();
@@ -123,7 +123,7 @@ fn road_of<'a>(about: &'a About, link: &Link) -> Option<&'a str> {
 }
 
 /// # Errors
-/// Links that end at different roads, or at different masses on a road.
+/// Fails if links end at different roads, or at different masses on a road.
 fn one_tyre(about: &About) -> Result<(), RoleError> {
     let tyres: Vec<&Link> = about.links.iter().filter(|l| road_of(about, l).is_some()).collect();
     let ends = |link: &Link| link.ends.iter().cloned().collect::<std::collections::BTreeSet<_>>();
@@ -137,13 +137,13 @@ fn one_tyre(about: &About) -> Result<(), RoleError> {
     })
 }
 
-/// What moves straight along an axis as a mass.
+/// The masses that move along an axis.
 fn masses_along<'a>(about: &'a About, axis: &'a str) -> impl Iterator<Item = &'a Mass> {
     let masses = about.masses.iter();
     masses.filter(move |mass| mass.axis == axis && !mass.angle)
 }
 
-/// The masses along an axis from `first` on, link by link; what no link reaches comes last.
+/// The masses along an axis from `first` on, link by link; masses without a link come last.
 fn outwards(about: &About, first: &str, axis: &str) -> Vec<String> {
     let mut reached = vec![first.to_string()];
     let mut at = 0;
@@ -170,7 +170,7 @@ fn outwards(about: &About, first: &str, axis: &str) -> Vec<String> {
 }
 
 /// # Errors
-/// No mass or several that it could be.
+/// Fails if there is no such mass, or several.
 fn body(about: &About, wheel: &str, on_tyre: &str, axis: &str) -> Result<String, RoleError> {
     let of_wheel = masses_along(about, axis).find(|mass| mass.location == wheel);
     let of_wheel: &[u16] = of_wheel.map_or(&[], |mass| &mass.parameters);

@@ -1,9 +1,9 @@
-//! The complete model of thesis section 3.3 in the time domain, and replays of what a rig has done.
+//! The complete model of thesis section 3.3 in the time domain, and replays of recorded inputs.
 //!
-//! [`ride`] drives a model whose tyre rolls over a road at constant speed (figure 3.2); [`Replay`] drives it by recorded
-//! inputs. Positions of a model are displacements from the design position, in which the car stands at rest: every link
-//! of the suspension carries its static preload there, and its law says what it gives beyond it, as K&C curves do. So
-//! gravity and preloads cancel out, and what moves the car is the force of the tyre less its static load.
+//! [`ride`] simulates a model whose tyre rolls over a road at constant speed (figure 3.2); [`Replay`] drives it with
+//! recorded inputs. Positions of a model are displacements from the design position, in which the car is at rest. Every
+//! link of the suspension has its static preload there, and its law gives the additional force, as K&C curves do. So
+//! gravity and preloads cancel, and the driving force is that of the tyre minus its static load.
 
 mod failure;
 // Accuracy of a simulation.

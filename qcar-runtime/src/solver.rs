@@ -1,9 +1,9 @@
 //! Time integration of `dx/dt = f(t, x)`: adaptive Dormand–Prince 5(4) and fixed-step RK4.
 //!
-//! A problem implements [`System`]; both integrators drive it through the same calls, hand every accepted [`Step`]
-//! (with its dense output) back to it, and say in a [`Report`] why they stopped and what it cost. Known times at which
-//! the right-hand side jumps are given as `breaks`: steps end there, and [`System::enter`] begins the next leg, so a
-//! right-hand side never has to guess on which side of a jump it is being asked.
+//! A problem implements [`System`]. Both integrators use the same calls, return every accepted [`Step`] (with its dense
+//! output) to it, and report in a [`Report`] why they stopped and their effort. Known times at which the right-hand
+//! side jumps are given as `breaks`: steps end there, and [`System::enter`] begins the next leg, so a right-hand side
+//! always knows on which side of a jump it is evaluated.
 //!
 //! Nothing is allocated after an integrator has been built.
 
@@ -32,21 +32,21 @@ pub use polynomial::PAST;
 pub use rk4::Rk4;
 pub use step::Step;
 
-/// A system of ordinary differential equations of first order, and what is to be done along its solution.
+/// A system of first-order ordinary differential equations, with its actions along the solution.
 pub trait System {
-    /// The right-hand side: writes `dx = f(t, x)`, and after it the [`System::signals`].
+    /// The right-hand side: writes `dx = f(t, x)`, followed by the [`System::signals`].
     ///
-    /// A value that is not finite is legal and means that the solution does not exist there: the step is refused.
+    /// A value that is not finite is allowed and means that the solution does not exist there: the step is rejected.
     fn derivative(&mut self, t: f64, x: &[f64], dx: &mut [f64]);
 
-    /// The number of signals that come with the derivative, written after it; an accepted step interpolates both.
+    /// Number of signals that are written after the derivative; an accepted step interpolates both.
     ///
-    /// So a signal that the right-hand side has at hand costs nothing more, however finely it is recorded.
+    /// So a signal that the right-hand side computes anyway has no further cost, however finely it is recorded.
     fn signals(&self) -> usize {
         0
     }
 
-    /// Called where a smooth leg begins: at the start, at each break, and after an event that asked to restart.
+    /// Called where a smooth leg begins: at the start, at each break, and after an event that requests a restart.
     ///
     /// It may change the state; from here to the next call the right-hand side must be smooth in `t`.
     fn enter(&mut self, _t: f64, _x: &mut [f64]) {}
@@ -54,17 +54,17 @@ pub trait System {
     /// Takes an accepted step.
     fn accept(&mut self, _step: &Step<'_>) {}
 
-    /// The first time after `from` at which the right-hand side will have a kink, as predicted from the state at
-    /// `t` and its rate; infinite where nothing is in sight.
+    /// The first time after `from` at which the right-hand side will have a kink, predicted from the state at `t` and
+    /// its rate; infinite if none is expected.
     ///
-    /// A method of high order loses its order across a kink, so a step ends there. The error control would find that too,
-    /// but by failed steps, and short ones until the kink is passed.
+    /// A method of high order loses its order across a kink, so a step ends there. The error control would also find
+    /// the kink, but by failed steps, and short ones until it is passed.
     fn next_bend(&self, _t: f64, _x: &[f64], _dx: &[f64], _from: f64) -> f64 {
         f64::INFINITY
     }
 
-    /// True where the system goes on from an accepted step that ended at `t` in state `x` by a method of its own that takes
-    /// less than this one. The integration pauses there, until [`DormandPrince::resume`].
+    /// True if the system continues from an accepted step that ended at `t` in state `x` by a method of its own that
+    /// needs less effort. The integration pauses there, until [`DormandPrince::resume`].
     fn takes_over(&mut self, _t: f64, _x: &[f64]) -> bool {
         false
     }
@@ -74,10 +74,10 @@ pub trait System {
         0
     }
 
-    /// The event functions; an event happens where one changes sign (zero counts as positive).
+    /// The event functions; an event is a change of sign (zero counts as positive).
     fn event_values(&mut self, _t: f64, _x: &[f64], _values: &mut [f64]) {}
 
-    /// Says what follows from an event; it may note the event, and changes the state only in [`System::enter`].
+    /// Consequence of an event. It may record the event, but changes the state only in [`System::enter`].
     fn happen(&mut self, _event: &Event<'_>) -> After {
         After::Continue
     }
@@ -86,20 +86,20 @@ pub trait System {
 /// An event function has changed its sign.
 #[derive(Clone, Copy, Debug)]
 pub struct Event<'a> {
-    /// Which event function.
+    /// Position of the event function.
     pub index: usize,
-    /// The first instant, to rounding, that has the new sign.
+    /// The first time, to rounding, with the new sign.
     pub time: f64,
-    /// True where the new sign is positive.
+    /// True if the new sign is positive.
     pub rising: bool,
-    /// The state at that instant, from the dense output.
+    /// The state at that time, from the dense output.
     pub state: &'a [f64],
 }
 
-/// What follows from an event.
+/// Consequence of an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum After {
-    /// The right-hand side is smooth across it: the step stands.
+    /// The right-hand side is smooth across it: the step continues.
     Continue,
     /// The step ends at the event, and a new leg begins there.
     Restart,
@@ -107,39 +107,39 @@ pub enum After {
     Stop,
 }
 
-/// How an integration ended.
+/// Result of an integration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use = "an integration may have stopped before its end"]
 pub struct Report {
-    /// Why it stopped.
+    /// Stopping reason.
     pub reason: Reason,
-    /// Where it stopped; the state is the solution at this time.
+    /// Time at which it stopped; the state is the solution at this time.
     pub time: f64,
-    /// What it cost.
+    /// Effort.
     pub effort: Effort,
 }
 
-/// Why an integration stopped.
+/// Stopping reason of an integration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reason {
     /// It has reached the end of its span.
     End,
-    /// The event function with this place asked for it.
+    /// The event function at this position requested it.
     Event(usize),
-    /// The system goes on by itself; see [`System::takes_over`].
+    /// The system continues by its own method; see [`System::takes_over`].
     TakenOver,
-    /// The state or its derivative is not finite just after this time, however short the step.
+    /// The state or its derivative is not finite just after this time, for any step length.
     NotFinite,
-    /// The tolerance cannot be met after this time with a step that still advances it.
+    /// The tolerance cannot be met after this time with a step that still advances the time.
     StepTooSmall,
-    /// Events follow one another without an end after this time, as those of a ball that comes to rest.
+    /// Events accumulate after this time, as those of a ball that comes to rest.
     Crowded,
-    /// The limit of attempted steps is used up.
+    /// The limit of attempted steps was reached.
     TooManySteps,
 }
 
 impl Reason {
-    /// True where the solution is known as far as was wanted.
+    /// True if the solution is known as far as requested.
     pub fn is_success(self) -> bool {
         matches!(self, Self::End | Self::Event(_))
     }
@@ -164,16 +164,16 @@ impl std::fmt::Display for Report {
     }
 }
 
-/// What an integration cost.
+/// Effort of an integration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Effort {
-    /// Calls of the right-hand side.
+    /// Number of calls of the right-hand side.
     pub evaluations: usize,
-    /// Steps that were taken.
+    /// Number of accepted steps.
     pub accepted: usize,
-    /// Steps that missed the tolerance or were not finite.
+    /// Number of steps that missed the tolerance or were not finite.
     pub rejected: usize,
-    /// Events that were located.
+    /// Number of located events.
     pub events: usize,
 }
 
@@ -188,7 +188,7 @@ impl std::ops::AddAssign for Effort {
 
 /// The smooth legs of a span: its ends and the breaks inside it, pairwise.
 ///
-/// Breaks must ascend; one that is no further than rounding from its predecessor is passed over.
+/// Breaks must ascend; a break within rounding of its predecessor is ignored.
 fn legs<'a>(span: (f64, f64), breaks: &'a [f64]) -> impl Iterator<Item = (f64, f64)> + 'a {
     let (start, end) = span;
     let gap = shortest_step(start, end);
@@ -203,12 +203,12 @@ fn legs<'a>(span: (f64, f64), breaks: &'a [f64]) -> impl Iterator<Item = (f64, f
     })
 }
 
-/// A step below this no longer advances the time of a span reliably.
+/// Smallest step that reliably advances the time of a span.
 fn shortest_step(start: f64, end: f64) -> f64 {
     16.0 * f64::EPSILON * start.abs().max(end.abs())
 }
 
-/// True where every entry is finite. Adding up `0 * value` needs no branch in the loop.
+/// True if every entry is finite. A sum of `0 * value` needs no branch in the loop.
 fn all_finite(values: &[f64]) -> bool {
     values.iter().map(|v| v * 0.0).sum::<f64>() == 0.0
 }

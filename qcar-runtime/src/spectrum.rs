@@ -11,7 +11,7 @@ use realfft::RealFftPlanner;
 pub enum Window {
     /// All one: for whole periods of a periodic signal.
     Rectangular,
-    /// The raised cosine, which keeps strong lines from leaking into weak ones.
+    /// Hann window, which keeps strong lines from leaking into weak ones.
     Hann,
 }
 
@@ -26,7 +26,7 @@ impl Window {
     }
 }
 
-/// What is taken off each segment before it is weighted.
+/// Trend that is subtracted from each segment before it is weighted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Trend {
     /// Nothing.
@@ -38,7 +38,7 @@ pub enum Trend {
 }
 
 impl Trend {
-    /// Takes the trend off `samples`.
+    /// Subtracts the trend from `samples`.
     pub fn remove(self, samples: &mut [f64]) {
         let n = samples.len() as f64;
         let mean = samples.iter().sum::<f64>() / n;
@@ -59,7 +59,7 @@ impl Trend {
     }
 }
 
-/// The plans of all lengths that were asked for: to make one takes as long as some transforms.
+/// Plans of all lengths so far, since making a plan takes as long as several transforms.
 fn plans() -> MutexGuard<'static, RealFftPlanner<f64>> {
     static PLANS: LazyLock<Mutex<RealFftPlanner<f64>>> = LazyLock::new(|| Mutex::new(RealFftPlanner::new()));
     PLANS.lock().unwrap_or_else(PoisonError::into_inner)
@@ -74,7 +74,7 @@ pub fn transform(samples: &[f64]) -> Vec<Complex<f64>> {
     lines
 }
 
-/// The real signal of `samples` samples that has these lines of [`transform`], from 0 on, and nothing above them.
+/// The real signal of `samples` samples with these lines of [`transform`], from 0 on, and zero above them.
 pub fn synthesize(lines: &[Complex<f64>], samples: usize) -> Vec<f64> {
     let plan = plans().plan_fft_inverse(samples);
     let (mut input, mut output) = (plan.make_input_vec(), plan.make_output_vec());
@@ -82,7 +82,7 @@ pub fn synthesize(lines: &[Complex<f64>], samples: usize) -> Vec<f64> {
     for (input, line) in input.iter_mut().zip(lines) {
         *input = line * scale;
     }
-    // What stands on neither side of its mirror image is real.
+    // The lines at zero and at half the sample rate are real.
     input[0].im = 0.0;
     if samples.is_multiple_of(2) {
         input[samples / 2].im = 0.0;
@@ -92,23 +92,23 @@ pub fn synthesize(lines: &[Complex<f64>], samples: usize) -> Vec<f64> {
     output
 }
 
-/// How a record is cut into segments.
+/// Segmentation of a record.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segments {
-    /// Samples of each.
+    /// Samples of a segment.
     pub length: usize,
-    /// Samples that one shares with the next, fewer than its length.
+    /// Samples that two segments share, fewer than their length.
     pub overlap: usize,
-    /// Weights.
+    /// Window.
     pub window: Window,
-    /// What is taken off each.
+    /// Trend that is subtracted.
     pub trend: Trend,
 }
 
 /// Two-sided auto- and cross-spectral densities of several signals, averaged over segments.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CrossSpectra {
-    /// Hz.
+    /// Frequencies, Hz.
     pub frequency: Vec<f64>,
     /// For each frequency the Hermitian matrix `E[X_i conj(X_j)]`, squared unit per Hz.
     pub density: Vec<DMatrix<Complex<f64>>>,
@@ -164,7 +164,7 @@ fn weighted(segment: &[f64], weights: &[f64], trend: Trend) -> Vec<Complex<f64>>
     transform(&segment)
 }
 
-/// How many independent segments the overlapping ones are worth: Welch's equation for white noise.
+/// Number of independent segments with the same variance as the overlapping ones: Welch's equation for white noise.
 fn independent(count: usize, step: usize, weights: &[f64]) -> f64 {
     let correlation = |shift: usize| weights.iter().zip(&weights[shift..]).map(|(a, b)| a * b).sum::<f64>();
     let overlapping = |k: usize| {

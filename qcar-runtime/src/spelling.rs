@@ -1,15 +1,15 @@
-//! The known name that is nearest to an unknown one.
+//! The known name nearest to an unknown one.
 
 use strsim::levenshtein;
 
-/// The known name that differs from `name` in the fewest letters, unless that is more than a third of its letters: names
-/// of one or two letters resemble everything.
+/// The known name that differs from `name` in the fewest letters, if that is at most a third of its letters; names of
+/// one or two letters would resemble everything.
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let (distance, nearest) = known.into_iter().map(|other| (levenshtein(name, other), other)).min()?;
     (3 * distance <= name.chars().count()).then_some(nearest)
 }
 
-/// What to do about a key that is not among the known ones.
+/// Remedy for an unknown key.
 pub fn remedy<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     match nearest(name, known) {
         Some(nearest) => format!("did you mean `{nearest}`? Otherwise remove it"),

@@ -1,9 +1,9 @@
-//! From the time histories of a run to transmissibilities with their uncertainty (thesis sections 2.6 and 3.4.4.2).
+//! Transmissibilities with their uncertainty from the time histories of a run (thesis sections 2.6 and 3.4.4.2).
 //!
 //! The sensors of a location are averaged over the sides of the vehicle, the pads to the virtual centre pad. All
 //! locations are related to one reference, the pad of a sweep or the force of a time history, and a transmissibility
-//! between two of them is the ratio of their responses to it: noise of the sensor that stands below the line then
-//! adds to its variance and not to its bias, as it does where the reference itself stands there.
+//! between two of them is the ratio of their responses to it. Noise of the sensor in the denominator then increases the
+//! variance of the result instead of its bias.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -28,20 +28,20 @@ mod band;
 pub use band::logarithmic;
 pub use line::Line;
 
-/// What is measured where: the sensors of all sides together, or those at one end alone.
+/// A measured location: the sensors of all sides together, or those at one end alone.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Point {
-    /// `pad`, or a mass, link or input of the model.
+    /// Location: `pad`, or a mass, link or input of the model.
     pub location: String,
-    /// Along which axis.
+    /// Axis.
     pub axis: Axis,
-    /// What.
+    /// Quantity.
     pub quantity: Quantity,
-    /// At which end of the place; `None` for the mean of all sensors there.
+    /// End of the location; `None` for the mean of all sensors there.
     pub end: Option<End>,
 }
 
-/// An end of what a place is, such as a sub-frame: it pitches where the two ends move apart.
+/// An end of a part, such as a sub-frame; it pitches if both ends move differently.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[expect(missing_docs, reason = "each says it")]
 pub enum End {
@@ -50,7 +50,7 @@ pub enum End {
 }
 
 impl End {
-    /// Where a sensor stands at an end.
+    /// The end at which a sensor is.
     fn of(side: Side) -> Option<End> {
         match side {
             Side::Front => Some(End::Front),
@@ -59,7 +59,7 @@ impl End {
         }
     }
 
-    /// As campaigns write it.
+    /// Name in campaigns.
     pub const fn name(self) -> &'static str {
         match self {
             End::Front => "front",
@@ -80,20 +80,20 @@ impl Point {
         }
     }
 
-    /// The place, and which end of it.
+    /// The location, and its end.
     pub fn place(&self) -> String {
         let end = self.end.map_or(String::new(), |end| format!(" {}", end.name()));
         format!("{}{end}", self.location)
     }
 
-    /// True where a sensor is one of the point's.
+    /// True if a sensor belongs to the point.
     pub fn has(&self, sensor: &Channel) -> bool {
         let stands_there = self.end.is_none_or(|end| End::of(sensor.side) == Some(end));
         let is_place = sensor.location == self.location && sensor.axis == self.axis;
         is_place && sensor.quantity == self.quantity && stands_there
     }
 
-    /// The two ends, each for itself, where a run has sensors at both; the point itself where it has not.
+    /// The two ends as separate points if a run has sensors at both, otherwise the point itself.
     pub fn ends(self, history: &History) -> Vec<Point> {
         let ends = [End::Front, End::Rear].map(|end| Point {
             end: Some(end),
@@ -108,34 +108,34 @@ impl Point {
     }
 }
 
-/// How frequency responses are estimated.
+/// Estimators of frequency responses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Estimator {
-    /// Local rational functions on the spectrum of the whole record: no bias from segments, for sweeps above all.
+    /// Local rational functions on the spectrum of the whole record: without bias from segments, above all for sweeps.
     ///
     /// Response `(b₀ + b₁δ) / (1 + a₁δ)` and leakage transient `t₀ / (1 + a₁δ)` over the lines around each frequency,
     /// by linear least squares; their residual gives the variance. After McKelvey and Guérin, "Non-parametric frequency
     /// response estimation using a local rational model", IFAC SYSID 2012; Pintelon and Schoukens, "System
     /// Identification", 2nd ed., chapter 7, for the local polynomials that it extends.
     Local {
-        /// Lines on each side of a frequency, at least.
+        /// Fewest lines on each side of a frequency.
         lines: usize,
-        /// Half width of the neighbourhood relative to the frequency, where that holds more lines.
+        /// Half width of the neighbourhood relative to the frequency, if that contains more lines.
         width: f64,
     },
     /// H1 by averaging segments (Bendat and Piersol, "Random Data", 4th ed., chapters 6 and 9).
     ///
-    /// For stationary excitation that is long against the memory of the system. A sweep passes a lightly damped mode
-    /// too fast for it: with segments of 4 s the magnitude comes out 4 to 9 % low at a body mode.
+    /// For stationary excitation that is long against the response time of the system. A sweep passes a lightly damped
+    /// mode too fast for it: with segments of 4 s the magnitude at a body mode is 4 to 9 % too low.
     Welch(Segments),
 }
 
 impl Estimator {
-    /// Bias below 0.2 % and 0.2° at modes of 1.2 Hz with a damping ratio of 0.1 and 8 Hz with 0.05 in a sweep of 40 s
-    /// from 0.5 to 30 Hz; wider neighbourhoods trade that for less noise.
+    /// Bias below 0.2 % and 0.2° at modes of 1.2 Hz with a damping ratio of 0.1 and 8 Hz with 0.05, in a sweep of 40 s
+    /// from 0.5 to 30 Hz. Wider neighbourhoods have more bias and less noise.
     pub const LOCAL: Estimator = Estimator::Local { lines: 8, width: 0.03 };
 
-    /// Hann segments of `seconds` at `rate` Hz, half of each shared with the next.
+    /// Hann segments of `seconds` at `rate` Hz with half overlap.
     pub fn welch(seconds: f64, rate: f64) -> Estimator {
         let length = ((seconds * rate).round() as usize).max(2);
         Estimator::Welch(Segments {
@@ -147,13 +147,13 @@ impl Estimator {
     }
 }
 
-/// What to estimate.
+/// Settings of the estimation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
-    /// How.
+    /// Estimator.
     pub estimator: Estimator,
-    /// Hz, increasing; by default 300 on a logarithmic scale over the sweep, or over what a time history excites.
-    /// Segment averages come at their own lines between the first and the last of these.
+    /// Frequencies, Hz, increasing; by default 300 on a logarithmic scale over the sweep, or over the band that a time
+    /// history excites. Segment averages are given at their own lines between the first and the last of these.
     pub frequencies: Option<Vec<f64>>,
 }
 
@@ -169,23 +169,23 @@ impl Default for Options {
 /// A measured frequency response `to / from` of one run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Transmissibility {
-    /// The run's file.
+    /// File of the run.
     pub file: PathBuf,
-    /// Below the line.
+    /// Denominator.
     pub from: Point,
-    /// Above the line.
+    /// Numerator.
     pub to: Point,
-    /// Hz.
+    /// Frequencies, Hz.
     pub frequency: Vec<f64>,
-    /// Ratio of the units of the points.
+    /// Values, in the ratio of the units of the points.
     pub value: Vec<Complex<f64>>,
     /// Variance `E|value - truth|²` of the complex value, half of it in each part.
     pub variance: Vec<f64>,
-    /// Share of the power that the reference explains, the product of both points' shares: 1 without any noise.
+    /// Coherence: share of the power that the reference explains, the product for both points; 1 without noise.
     pub coherence: Vec<f64>,
 }
 
-/// Every point that a run has measured, in the order of its channels.
+/// All measured points of a run, in the order of its channels.
 pub fn points(history: &History) -> Vec<Point> {
     let mut points = Vec::new();
     for (channel, _) in &history.signals {
@@ -200,7 +200,7 @@ pub fn points(history: &History) -> Vec<Point> {
 /// The mean signal of all sensors of a point: left and right, front and rear, or the one in the centre.
 ///
 /// # Errors
-/// Where the run recorded none.
+/// Fails if the run recorded none.
 pub fn signal(history: &History, point: &Point) -> Result<Vec<f64>, InputError> {
     let sensors: Vec<_> = history
         .signals
@@ -219,11 +219,11 @@ pub fn signal(history: &History, point: &Point) -> Result<Vec<f64>, InputError> 
         .collect())
 }
 
-/// The transmissibilities of a run over the pairs `(from, to)`, all by way of `reference`: the excitation.
+/// Transmissibilities of a run for the pairs `(from, to)`, all estimated by way of `reference`, the excitation.
 ///
 /// # Errors
-/// Where a point was not measured or a sensor was dead, the reference does not move, or does not reach the ends of a sweep, or where the
-/// record is too short or too slowly sampled for the frequencies.
+/// Fails if a point was not measured, if a sensor is dead, if the reference does not move or does not reach the ends of
+/// a sweep, or if the record is too short or its rate too low for the frequencies.
 pub fn transmissibilities(
     history: &History,
     reference: &Point,
@@ -245,7 +245,7 @@ impl Related {
     /// Relates `points` to `reference`, which may be one of them.
     ///
     /// # Errors
-    /// As [`transmissibilities`].
+    /// Fails as [`transmissibilities`] does.
     pub fn new<'a>(
         history: &History,
         reference: &Point,
@@ -263,7 +263,7 @@ impl Related {
         Ok(Self { points, lines })
     }
 
-    /// The response of a point to the reference, line by line; `None` of a point that is not among them.
+    /// Response of a point to the reference, line by line; `None` for an unknown point.
     pub fn response(&self, point: &Point) -> Option<impl Iterator<Item = Complex<f64>>> {
         let place = self.place(point)?;
         Some(self.lines.iter().map(move |line| line.value[place]))
@@ -272,7 +272,7 @@ impl Related {
     /// The ratio of two of the points, `(from, to)`.
     ///
     /// # Panics
-    /// Where one is not among them.
+    /// If one of them is unknown.
     pub fn ratio(&self, history: &History, pair: &(Point, Point)) -> Transmissibility {
         let place = |point: &Point| self.place(point).expect("it is among them");
         ratio(history, pair, (place(&pair.0), place(&pair.1)), &self.lines)
@@ -286,7 +286,7 @@ impl Related {
 /// The responses of all `points` to the first of them, with their joint covariance.
 ///
 /// # Errors
-/// As [`transmissibilities`].
+/// Fails as [`transmissibilities`] does.
 pub fn responses(history: &History, points: &[Point], options: &Options) -> Result<Vec<Line>, InputError> {
     let signals = points
         .iter()
@@ -310,7 +310,7 @@ pub fn responses(history: &History, points: &[Point], options: &Options) -> Resu
     Ok(lines)
 }
 
-/// A sensor that never changes is dead, and would halve the mean of its pair.
+/// A constant sensor is dead, and would halve the mean of its pair.
 fn check_alive(history: &History, points: &[Point]) -> Result<(), InputError> {
     let involved = |channel: &Channel| points.iter().any(|point| point.has(channel));
     let recorded = history.signals.iter().filter(|(channel, _)| involved(channel));
@@ -329,9 +329,9 @@ fn check_alive(history: &History, points: &[Point]) -> Result<(), InputError> {
     InputError::unless_empty(dead.map(|(channel, _)| problem(channel)).collect(), Some(()))
 }
 
-/// The response of a zero-order hold, at `f` as a share of the sample rate, to the sampled signal that it holds.
+/// Response of a zero-order hold to the sampled signal, at `f` relative to the sample rate.
 ///
-/// What it images above half the sample rate is left out: second-order systems suppress it.
+/// Images above half the sample rate are neglected, since second-order systems suppress them.
 fn hold(f: f64) -> Complex<f64> {
     let half = std::f64::consts::PI * f;
     Complex::from_polar(if half == 0.0 { 1.0 } else { half.sin() / half }, -half)

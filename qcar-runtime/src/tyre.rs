@@ -1,10 +1,10 @@
 //! Contact geometry of a rolling tyre: the intersection of the road with the circle of the unloaded tyre.
 //!
-//! The geometry answers with an equivalent deflection (that on a flat road with the same contact), with its rate split
-//! into growth and shrinkage, and with the directions in which each part pushes. How strongly it pushes is the law of
-//! a link in the model file, `f(s, v)` with the stretch `s` = -deflection; see [`Touch::force`].
+//! The geometry gives an equivalent deflection (that on a flat road with the same contact), its rate split into growth
+//! and shrinkage, and the direction in which each part pushes. The magnitude is the law of a link in the model file,
+//! `f(s, v)` with the stretch `s` = -deflection; see [`Touch::force`].
 //!
-//! The ground under the circle is taken to stay below the wheel's centre; several separate patches are legal.
+//! The ground under the circle is assumed to be below the wheel centre. Several separate patches are allowed.
 //!
 //! # A law for the link (figures 3.8 and 3.9 of the thesis)
 //!
@@ -48,32 +48,32 @@ pub struct Tyre {
     static_rate: f64,
 }
 
-/// How the road is felt.
+/// Contact geometry: how the road acts on the tyre.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Geometry {
-    /// By the height under the wheel's centre alone, vertically (thesis 3.3.2.1).
+    /// Height below the wheel centre, vertically (thesis 3.3.2.1).
     Point,
-    /// By the area that the circle has in common with the ground (thesis 3.3.2.2).
+    /// Overlap area of circle and ground (thesis 3.3.2.2).
     Area,
-    /// By springs along the radii (thesis 2.4.3.2).
+    /// Springs along the radii (thesis 2.4.3.2).
     Radial,
 }
 
 /// The deflection at which a change of the contact is converted to the rate of the equivalent deflection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rates {
-    /// At the static deflection, whatever the contact: the ratio is a constant (thesis 3.3.2.2).
+    /// At the static deflection: the ratio is a constant (thesis 3.3.2.2).
     AtStaticDeflection,
-    /// At the equivalent deflection of the moment: the rate is the derivative of that deflection.
+    /// At the present equivalent deflection: the rate is the derivative of that deflection.
     AtDeflection,
 }
 
 /// The motion of a wheel's centre over the road, `[x, z]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wheel {
-    /// m.
+    /// Position, m.
     pub position: [f64; 2],
-    /// m/s.
+    /// Velocity, m/s.
     pub velocity: [f64; 2],
 }
 
@@ -95,11 +95,11 @@ pub struct Touch {
 pub struct Change {
     /// Rate of the equivalent deflection, m/s, never negative.
     pub rate: f64,
-    /// From the centroid of this part; zero where there is no such part.
+    /// Direction from the centroid of this part; zero without such a part.
     pub direction: [f64; 2],
 }
 
-/// Why numbers do not make a tyre.
+/// Reason why numbers are no tyre.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says it")]
 pub enum TyreError {
@@ -113,7 +113,7 @@ impl Tyre {
     /// A tyre of unloaded `radius` (m) that its static load deflects by `static_deflection` (m) on a flat road.
     ///
     /// # Errors
-    /// A radius that is not positive, a static deflection that is not between zero and the radius.
+    /// Fails if the radius is not positive, or if the static deflection is not between zero and the radius.
     pub fn new(radius: f64, static_deflection: f64, geometry: Geometry, rates: Rates) -> Result<Self, TyreError> {
         if !(radius.is_finite() && radius > 0.0) {
             return Err(TyreError::Radius { radius });
@@ -144,7 +144,7 @@ impl Tyre {
         self.static_deflection
     }
 
-    /// How the road is felt.
+    /// Contact geometry.
     pub fn geometry(&self) -> Geometry {
         self.geometry
     }
@@ -165,15 +165,15 @@ impl Tyre {
 
     /// The contact of a wheel with a road; `None` if the circle is clear of the ground.
     ///
-    /// Allocates nothing; takes a time that hardly depends on how finely the road is sampled
-    /// (except [`Geometry::Radial`], which evaluates each piece of the road in the circle).
+    /// Allocates nothing. Its time hardly depends on the sampling of the road (except for [`Geometry::Radial`], which
+    /// evaluates each piece of the road in the circle).
     pub fn touch(&self, road: &Road, wheel: &Wheel) -> Option<Touch> {
         self.touch_near(road, wheel, &Cell::new(0))
     }
 
-    /// As [`Tyre::touch`], with a memory of the piece of road that was last under the wheel.
+    /// As [`Tyre::touch`], starting with the piece of road that was under the wheel before.
     ///
-    /// Where that piece still is all that the circle is over, which is most of the time, nothing is searched for.
+    /// If the circle is still over this piece alone, as most of the time, no search is needed.
     #[inline(always)]
     pub(crate) fn touch_near(&self, road: &Road, wheel: &Wheel, piece: &Cell<usize>) -> Option<Touch> {
         match self.geometry {

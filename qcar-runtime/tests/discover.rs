@@ -1,12 +1,12 @@
-//! Evidence made from closed forms, with sensors that are wrong by known amounts, against refit and gap.
+//! Evidence made from closed forms, with sensors that are wrong by known amounts, against refit and misfit.
 
 use nalgebra::Complex;
 use qcar_runtime::campaign::{Axis, Role};
-use qcar_runtime::discover::locate::{Kappa, KappaRun, Shape, shape};
+use qcar_runtime::discover::locate::{MissingStiffness, RunStiffness, Shape, shape};
 use qcar_runtime::discover::noise::{Form, Nuisance};
 use qcar_runtime::discover::observe::{Evidence, Kind, Series, Stimulus, predict};
 use qcar_runtime::discover::posterior::refit_with;
-use qcar_runtime::discover::{Free, Gap, Place, Refit, Sweeps, kappa_map, refit};
+use qcar_runtime::discover::{Free, Misfit, Place, Refit, Sweeps, refit, stiffness_map};
 use qcar_runtime::model::{Clock, Model};
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::response::ratio::ratio;
@@ -77,7 +77,7 @@ fn resolve(model: &Strut, p: &[f64]) -> Values {
 }
 
 /// Starts a fifth off and fits all but the known masses.
-fn fitted(model: &Strut, evidence: &Evidence) -> (Refit, Gap) {
+fn fitted(model: &Strut, evidence: &Evidence) -> (Refit, Misfit) {
     let start: Vec<f64> = TRUTH
         .iter()
         .enumerate()
@@ -92,8 +92,8 @@ fn fitted(model: &Strut, evidence: &Evidence) -> (Refit, Gap) {
         })
         .collect();
     let refit = refit(model, &resolve(model, &start), &all, evidence).expect("the model has the sensors");
-    let gap = Gap::of(model, &refit, evidence).expect("the model has the sensors");
-    (refit, gap)
+    let misfit = Misfit::of(model, &refit, evidence).expect("the model has the sensors");
+    (refit, misfit)
 }
 
 fn free(parameter: usize) -> bool {
@@ -101,7 +101,7 @@ fn free(parameter: usize) -> bool {
 }
 
 #[test]
-fn a_smooth_calibration_error_leaves_no_gap() {
+fn a_smooth_calibration_error_leave_noise_alone() {
     let model = Strut::new(PLAIN);
     let wrong = |location: &str, f: f64| match location {
         "pad" => 1.008 - 0.003 * f.ln(),
@@ -109,10 +109,10 @@ fn a_smooth_calibration_error_leaves_no_gap() {
         _ => 1.005 + 0.004 * (f / 5.0).ln().sin(),
     };
     let evidence = evidence(&model, &TRUTH, wrong);
-    let (refit, gap) = fitted(&model, &evidence);
+    let (refit, misfit) = fitted(&model, &evidence);
     assert!(refit.stop.converged());
-    assert!((0.85..1.15).contains(&gap.fit), "{}", gap.fit);
-    assert!((0.85..1.15).contains(&gap.held_out), "{}", gap.held_out);
+    assert!((0.85..1.15).contains(&misfit.fit), "{}", misfit.fit);
+    assert!((0.85..1.15).contains(&misfit.held_out), "{}", misfit.held_out);
     for ((free, estimate), stderr) in refit.free.iter().zip(&refit.estimate).zip(refit.stderr()) {
         let error = (estimate - TRUTH[free.parameter]).abs();
         assert!(
@@ -177,7 +177,7 @@ fn a_gain_beyond_calibration_is_told_when_suspected() {
         |location, _| if location == "wheel" { 1.04 } else { 1.0 },
     );
     let (base, _) = fitted(&model, &wrong);
-    let suspected = Nuisance::of(&wrong).suspecting("wheel", Some(Axis::Z), Form::Gain(0), 1.0);
+    let suspected = Nuisance::of(&wrong).with_suspect("wheel", Some(Axis::Z), Form::Gain(0), 1.0);
     let suspected = suspected.expect("the wheel has a sensor");
     let refit = refit_with(&model, &base.values, &base.free, &wrong, suspected, 60).expect("sensors are there");
     let gain = refit.coefficients[refit.nuisance.len() - 1].exp();
@@ -197,16 +197,21 @@ fn a_missing_mass_leaves_a_gap_around_its_mode() {
     // A powertrain of 70 kg on mounts with a mode at 9.5 Hz.
     let p: Vec<f64> = TRUTH.iter().copied().chain([70.0, 250e3, 600.0]).collect();
     let evidence = evidence(&real, &p, |_, _| 1.0);
-    let (refit, gap) = fitted(&model, &evidence);
-    assert!(gap.fit > 5.0 && gap.held_out > 5.0, "{} {}", gap.fit, gap.held_out);
-    let strongest = &gap.tiles[0];
+    let (refit, misfit) = fitted(&model, &evidence);
+    assert!(
+        misfit.fit > 5.0 && misfit.held_out > 5.0,
+        "{} {}",
+        misfit.fit,
+        misfit.held_out
+    );
+    let strongest = &misfit.tiles[0];
     assert!(
         strongest.span.1 > 6.0 && strongest.span.0 < 14.0,
         "{:?}",
         strongest.span
     );
     let sweeps = Sweeps::new(&model, &refit, &evidence).expect("the model has the sensors");
-    let nothing_better = sweeps.explained_by(&gap, &evidence).expect("there is a gap");
+    let nothing_better = sweeps.explained_by(&misfit, &evidence).expect("there is a residual");
     let best = sweeps.places[0].ceiling;
     assert!(
         nothing_better < best && best < 1.0,
@@ -242,21 +247,21 @@ fn laws_are_told_by_their_shape() {
                 exact * (1.0 + 0.01 * Complex::new(random.normal(), random.normal()))
             };
             let value: Vec<Complex<f64>> = frequency.iter().map(at).collect();
-            KappaRun {
+            RunStiffness {
                 run: 0,
                 level,
-                sigma: value.iter().map(|kappa| 0.014 * kappa.norm()).collect(),
+                sigma: value.iter().map(|stiffness| 0.014 * stiffness.norm()).collect(),
                 frequency,
                 value,
             }
         };
-        let kappa = Kappa {
+        let stiffness = MissingStiffness {
             place: Place::Parameter(0),
             ceiling: 1.0,
             common: 1.0,
             runs: vec![run(0.025), run(0.1)],
         };
-        assert_eq!(shape(&kappa), expected, "law {k}");
+        assert_eq!(shape(&stiffness), expected, "law {k}");
     }
 }
 
@@ -268,9 +273,9 @@ fn held_out_runs_are_not_seen_by_the_fit() {
     for series in evidence.series.iter_mut().filter(|series| series.run == 1) {
         series.value.iter_mut().for_each(|value| *value *= 3.0);
     }
-    let (after, gap) = fitted(&model, &evidence);
+    let (after, misfit) = fitted(&model, &evidence);
     assert_eq!(before.estimate, after.estimate);
-    assert!(gap.held_out > 100.0);
+    assert!(misfit.held_out > 100.0);
 }
 
 /// A spring of 30 N/mm in parallel to the sub-spring: κ is 30 N/mm at every frequency, whatever the size of the change.
@@ -280,15 +285,15 @@ fn kappa_is_the_stiffness_that_was_taken_away() {
     let mut real = TRUTH;
     real[3] += 30e3;
     let evidence = evidence(&model, &real, |_, _| 1.0);
-    let base = refit(&model, &resolve(&model, &TRUTH), &[], &evidence.tolerant(0.05)).expect("sensors are there");
+    let base = refit(&model, &resolve(&model, &TRUTH), &[], &evidence.with_tolerance(0.05)).expect("sensors are there");
     let base = Refit {
         coefficients: vec![0.0; base.coefficients.len()],
         ..base
     };
-    let map = kappa_map(&model, &base, &evidence).expect("sensors are there");
+    let map = stiffness_map(&model, &base, &evidence).expect("sensors are there");
     let spring = map
         .iter()
-        .find(|kappa| kappa.place == Place::Parameter(3))
+        .find(|stiffness| stiffness.place == Place::Parameter(3))
         .expect("channels see the spring");
     assert!(
         spring.ceiling > 0.99 && spring.ceiling > map[0].ceiling - 0.002,
@@ -297,16 +302,16 @@ fn kappa_is_the_stiffness_that_was_taken_away() {
     );
     assert_eq!(shape(spring), Shape::SpringDamper);
     let run = &spring.runs[0];
-    for ((f, kappa), sigma) in run.frequency.iter().zip(&run.value).zip(&run.sigma) {
+    for ((f, stiffness), sigma) in run.frequency.iter().zip(&run.value).zip(&run.sigma) {
         assert!(
-            (kappa - 30e3).norm() < 4.0 * sigma + 600.0,
-            "{kappa} ± {sigma} N/m at {f} Hz"
+            (stiffness - 30e3).norm() < 4.0 * sigma + 600.0,
+            "{stiffness} ± {sigma} N/m at {f} Hz"
         );
         assert!(*f > 4.0 || *sigma < 3e3, "± {sigma} N/m at {f} Hz");
     }
     let sensor = map
         .iter()
-        .find(|kappa| kappa.place == Place::Sensor(point("body")))
+        .find(|stiffness| stiffness.place == Place::Sensor(point("body")))
         .expect("it was measured");
     assert!(sensor.ceiling < 0.9, "{}", sensor.ceiling);
 }

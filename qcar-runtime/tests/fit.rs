@@ -9,7 +9,7 @@ use qcar_runtime::fit::quality::{K_MAGNITUDE, K_PHASE, quality};
 use qcar_runtime::fit::report::{Bound, NoError, ParameterFit};
 use qcar_runtime::fit::{Fit, Level, Observation, Plan, Setup, Weighting, channels::across_links};
 use qcar_runtime::model::{Channel, Default, Model};
-use qcar_runtime::progress::UNTOLD;
+use qcar_runtime::progress::NO_PROGRESS;
 use std::collections::BTreeMap;
 
 use super::support::{self, Assembled, CHAIN, Law, acceleration, between, chain};
@@ -217,7 +217,7 @@ fn bootstrap_intervals_cover_the_truth_as_often_as_they_say() {
             let levels = [level];
             let setup = Setup::new(&model, &plan, &levels).unwrap();
             let fit = setup.fit();
-            let found = setup.bootstrap(&fit, 100, UNTOLD);
+            let found = setup.bootstrap(&fit, 100, NO_PROGRESS);
             assert_eq!(found.failed, 0);
             for own in &found.parameters {
                 let truth = CHAIN.iter().find(|given| given.0 == own.name).unwrap().2;
@@ -264,7 +264,10 @@ fn a_bootstrap_depends_on_the_seed_alone_and_has_gains_and_sides_in_it() {
         let levels = [level.clone()];
         let setup = Setup::new(&model, plan, &levels).unwrap();
         let fit = setup.fit();
-        let (found, again) = (setup.bootstrap(&fit, 300, UNTOLD), setup.bootstrap(&fit, 300, UNTOLD));
+        let (found, again) = (
+            setup.bootstrap(&fit, 300, NO_PROGRESS),
+            setup.bootstrap(&fit, 300, NO_PROGRESS),
+        );
         assert_eq!(found, again);
         let relative = |own: &ParameterBootstrap| own.stderr / own.value;
         found.parameters.iter().map(relative).fold(0.0, f64::max)

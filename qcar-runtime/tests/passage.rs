@@ -10,7 +10,7 @@ use qcar_runtime::campaign::{Campaign, Role};
 use qcar_runtime::discover::noise::{Form, Nuisance};
 use qcar_runtime::discover::observe::{Kind, Means, predict};
 use qcar_runtime::discover::posterior::refit_with;
-use qcar_runtime::discover::{Evidence, Free, Gap, Refit, refit};
+use qcar_runtime::discover::{Evidence, Free, Misfit, Refit, refit};
 use qcar_runtime::model::{About, Model};
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::road::Road;
@@ -158,16 +158,16 @@ fn free(about: &About) -> Vec<Free> {
     FREE.iter().map(of).collect()
 }
 
-fn fitted(campaign: &Campaign) -> (Evidence, Refit, Gap) {
+fn fitted(campaign: &Campaign) -> (Evidence, Refit, Misfit) {
     let model = Roller::new();
     let evidence = Evidence::from_campaign(campaign, model.about()).expect("the runs can be read");
     let refit = refit(&model, &values(model.about(), 1.2), &free(model.about()), &evidence).expect("it rolls");
-    let gap = Gap::of(&model, &refit, &evidence).expect("it rolls");
-    (evidence, refit, gap)
+    let misfit = Misfit::of(&model, &refit, &evidence).expect("it rolls");
+    (evidence, refit, misfit)
 }
 
 #[test]
-fn a_late_clock_and_a_sensor_that_reads_high_leave_no_gap() {
+fn a_late_clock_and_a_sensor_that_reads_high_leave_noise_alone() {
     let folder = tempfile::tempdir().expect("a place for files");
     let recorder = Recorder {
         late: 3,
@@ -175,7 +175,7 @@ fn a_late_clock_and_a_sensor_that_reads_high_leave_no_gap() {
         ..RIGHT
     };
     let campaign = campaign(folder.path(), &parameters(), recorder, 1.4);
-    let (evidence, refit, gap) = fitted(&campaign);
+    let (evidence, refit, misfit) = fitted(&campaign);
     assert_eq!(evidence.series.len(), 12);
     assert!(
         evidence
@@ -184,8 +184,8 @@ fn a_late_clock_and_a_sensor_that_reads_high_leave_no_gap() {
             .all(|series| series.kind == Kind::Passage && series.at.len() > 150)
     );
     assert!(refit.stop.converged(), "{:?}", refit.stop);
-    assert!((0.2..1.1).contains(&gap.fit), "{}", gap.fit);
-    assert!((0.2..1.1).contains(&gap.held_out), "{}", gap.held_out);
+    assert!((0.2..1.1).contains(&misfit.fit), "{}", misfit.fit);
+    assert!((0.2..1.1).contains(&misfit.held_out), "{}", misfit.held_out);
     for (free, estimate) in refit.free.iter().zip(&refit.estimate) {
         let true_value = parameters()[free.parameter];
         assert!(
@@ -205,19 +205,29 @@ fn a_location_that_is_late_against_the_others_is_told_from_a_late_clock() {
         ..RIGHT
     };
     let campaign = campaign(folder.path(), &parameters(), recorder, 1.4);
-    let (evidence, _, gap) = fitted(&campaign);
-    assert!(gap.fit > 1.5 && gap.held_out > 1.5, "{} {}", gap.fit, gap.held_out);
+    let (evidence, _, misfit) = fitted(&campaign);
+    assert!(
+        misfit.fit > 1.5 && misfit.held_out > 1.5,
+        "{} {}",
+        misfit.fit,
+        misfit.held_out
+    );
 
     let model = Roller::new();
     let (values, free) = (values(model.about(), 1.05), free(model.about()));
-    let suspecting = |location, axis| Nuisance::of(&evidence).suspecting(location, axis, Form::Delay, 0.02);
-    let late = suspecting("wheel", None).expect("both axes are there");
+    let with_suspect = |location, axis| Nuisance::of(&evidence).with_suspect(location, axis, Form::Delay, 0.02);
+    let late = with_suspect("wheel", None).expect("both axes are there");
     let refit = refit_with(&model, &values, &free, &evidence, late, 60).expect("it rolls");
-    let gap = Gap::of(&model, &refit, &evidence).expect("it rolls");
-    assert!(gap.fit < 1.1 && gap.held_out < 1.1, "{} {}", gap.fit, gap.held_out);
+    let misfit = Misfit::of(&model, &refit, &evidence).expect("it rolls");
+    assert!(
+        misfit.fit < 1.1 && misfit.held_out < 1.1,
+        "{} {}",
+        misfit.fit,
+        misfit.held_out
+    );
     let delay = refit.coefficients[refit.nuisance.len() - 1];
     assert!((delay - 0.004).abs() < 1e-4, "{delay} s");
-    assert_eq!(suspecting("pad", None), None);
+    assert_eq!(with_suspect("pad", None), None);
 }
 
 #[test]
@@ -225,8 +235,13 @@ fn a_missing_bump_stop_leaves_a_gap_that_no_calibration_closes() {
     let folder = tempfile::tempdir().expect("a place for files");
     let mut p = parameters();
     p[K_STOP] = 600e3;
-    let (_, refit, gap) = fitted(&campaign(folder.path(), &p, RIGHT, 1.4));
-    assert!(gap.fit > 2.0 && gap.held_out > 2.0, "{} {}", gap.fit, gap.held_out);
+    let (_, refit, misfit) = fitted(&campaign(folder.path(), &p, RIGHT, 1.4));
+    assert!(
+        misfit.fit > 2.0 && misfit.held_out > 2.0,
+        "{} {}",
+        misfit.fit,
+        misfit.held_out
+    );
     let side = refit.side.as_slice().iter().zip(refit.values.as_slice());
     side.filter(|(_, value)| **value != 0.0).for_each(|(side, value)| {
         assert!((side / value).ln().abs() < 0.046, "{side} beside {value}");

@@ -1,6 +1,6 @@
 //! Rides of a hand-written model against what must hold of any ride.
 
-use qcar_runtime::progress::UNTOLD;
+use qcar_runtime::progress::NO_PROGRESS;
 use qcar_runtime::road::{Road, RoadError};
 use qcar_runtime::simulate::{Drive, Method, Ride, Settings, SimulateError, Variant, ride, rides};
 
@@ -197,7 +197,7 @@ fn results_do_not_depend_on_the_number_of_threads() {
             .num_threads(threads)
             .build()
             .expect("threads");
-        pool.install(|| rides(&car, &drives, &Settings::default(), UNTOLD))
+        pool.install(|| rides(&car, &drives, &Settings::default(), NO_PROGRESS))
     };
     let (one, four) = (with(1), with(4));
     assert_eq!(one.len(), 12);

@@ -250,7 +250,7 @@ fn a_law_takes_the_place_of_a_class_only_where_it_explains_more_than_its_members
     };
     let class = answer_of(bench, &evidence(0.0, &LEVELS));
     assert_eq!(class.verdict, Verdict::Class);
-    assert_eq!(class.alike, 2);
+    assert_eq!(class.alternatives, 2);
     assert!(class.learned.is_none());
 }
 

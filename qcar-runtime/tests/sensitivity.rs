@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use qcar_runtime::progress::UNTOLD;
+use qcar_runtime::progress::NO_PROGRESS;
 use qcar_runtime::sensitivity::{Indices, Plan, indices};
 
 const PLAN: Plan = Plan {
@@ -31,7 +31,7 @@ fn ishigami() {
             x[0].sin() + a * x[1].sin().powi(2) + b * x[2].powi(4) * x[0].sin(),
         ])
     };
-    let found = indices(3, PLAN, UNTOLD, |designs| designs.iter().map(design).collect());
+    let found = indices(3, PLAN, NO_PROGRESS, |designs| designs.iter().map(design).collect());
     let (one, two) = (0.5 * (1.0 + b * PI.powi(4) / 5.0).powi(2), a * a / 8.0);
     let together = 8.0 * b * b * PI.powi(8) / 225.0;
     let all = one + two + together;
@@ -51,7 +51,7 @@ fn ishigami() {
 fn a_sum() {
     let factors = [3.0, -2.0, 1.0, 0.0];
     let design = |u: &Vec<f64>| Some(vec![5.0 + u.iter().zip(factors).map(|(u, f)| u * f).sum::<f64>()]);
-    let found = indices(4, PLAN, UNTOLD, |designs| designs.iter().map(design).collect());
+    let found = indices(4, PLAN, NO_PROGRESS, |designs| designs.iter().map(design).collect());
     let exact = factors.map(|factor| [factor * factor / 14.0; 2]);
     hold(&found, &exact);
     for (found, [first, total]) in found.of[0].iter().zip(exact) {
@@ -68,7 +68,7 @@ fn a_sum() {
 fn designs_without_results_are_left_out_and_counted() {
     let design = |u: &Vec<f64>| (u[0] < 0.9).then(|| vec![u[1]]);
     let plan = Plan { designs: 400, seed: 3 };
-    let found = indices(2, plan, UNTOLD, |designs| designs.iter().map(design).collect());
+    let found = indices(2, plan, NO_PROGRESS, |designs| designs.iter().map(design).collect());
     assert!((10..40).contains(&found.failed), "{}", found.failed);
     assert!(found.of[0][1].total > 0.9);
 }

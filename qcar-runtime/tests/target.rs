@@ -1,6 +1,6 @@
 //! Target search, fronts and solution spaces on problems with closed forms.
 
-use qcar_runtime::progress::UNTOLD;
+use qcar_runtime::progress::NO_PROGRESS;
 use qcar_runtime::random::SplitMix;
 use qcar_runtime::target::{
     Coupling, Designs, FrontSettings, Knob, Limit, Sense, SpaceSettings, Task, cut, front, search, space,
@@ -67,7 +67,7 @@ fn task<'a>(designs: &'a Formula, knobs: Vec<Knob>, limits: Vec<Limit>) -> Task<
 fn the_cheapest_design_stands_on_the_limit_and_its_multiplier_is_the_slope_of_the_cost() {
     let disc = Formula(|x| vec![x[0] * x[0] + x[1] * x[1]]);
     let knobs = vec![knob("x", 0.0, 4.0, 2.0, None), knob("y", 0.0, 4.0, 2.0, None)];
-    let found = search(&task(&disc, knobs, vec![at_most(0, 4.0)]), 1, UNTOLD).unwrap();
+    let found = search(&task(&disc, knobs, vec![at_most(0, 4.0)]), 1, NO_PROGRESS).unwrap();
     assert!(found.met, "{found:?}");
     for value in &found.design {
         assert!((value - 2.0_f64.sqrt()).abs() < 1e-3, "{found:?}");
@@ -87,10 +87,10 @@ fn what_must_equal_a_value_does() {
             ..at_most(result, value)
         })
     };
-    let found = search(&task(&curved, knobs(), equal(0, 3.0).to_vec()), 1, UNTOLD).unwrap();
+    let found = search(&task(&curved, knobs(), equal(0, 3.0).to_vec()), 1, NO_PROGRESS).unwrap();
     assert!(found.met && found.values[0] - 3.0 < 3.0 * 5e-5, "{found:?}");
     let both = [equal(0, 3.0), equal(1, 2.0)].concat();
-    let found = search(&task(&curved, knobs(), both), 1, UNTOLD).unwrap();
+    let found = search(&task(&curved, knobs(), both), 1, NO_PROGRESS).unwrap();
     assert!(found.met, "{found:?}");
     for (value, wanted) in found.values.iter().zip([3.0, 2.0]) {
         assert!((value / wanted - 1.0).abs() < 5e-5, "{found:?}");
@@ -119,7 +119,7 @@ fn couplings_and_steps_hold() {
         factors: vec![-1.0, 1.0],
         most: 0.0,
     }];
-    let found = search(&task, 1, UNTOLD).unwrap();
+    let found = search(&task, 1, NO_PROGRESS).unwrap();
     // Of all designs that can be had with y ≤ x and x + 2 y ≥ 7.3, by trying them all.
     let all = (0..=10).flat_map(|i| (0..=20).map(move |j| [f64::from(i), 0.5 * f64::from(j)]));
     let good = all.filter(|[x, y]| y <= x && x + 2.0 * y >= 7.3);
@@ -132,7 +132,7 @@ fn what_cannot_be_met_names_what_stands_in_the_way() {
     let contradiction = Formula(|x| vec![x[0], -x[0], x[1]]);
     let knobs = vec![knob("x", 0.0, 1.0, 0.5, None), knob("y", 0.0, 1.0, 0.5, None)];
     let limits = vec![at_most(0, 0.2), at_most(1, -0.8), at_most(2, 0.9)];
-    let found = search(&task(&contradiction, knobs, limits), 1, UNTOLD).unwrap();
+    let found = search(&task(&contradiction, knobs, limits), 1, NO_PROGRESS).unwrap();
     assert!(!found.met);
     assert!(
         found.multipliers[2] == 0.0 && found.multipliers[0] + found.multipliers[1] > 0.99,
@@ -153,7 +153,13 @@ fn the_front_of_zdt1() {
         generations: 120,
         ..FrontSettings::default()
     };
-    let found = front(&task, &[(0, Sense::AtMost), (1, Sense::AtMost)], &[], settings, UNTOLD);
+    let found = front(
+        &task,
+        &[(0, Sense::AtMost), (1, Sense::AtMost)],
+        &[],
+        settings,
+        NO_PROGRESS,
+    );
     assert!(found.points.len() > 30, "{}", found.points.len());
     for point in &found.points {
         let above = point.values[1] - (1.0 - point.values[0].sqrt());
@@ -177,7 +183,7 @@ fn the_largest_box_in_a_triangle_and_a_hundred_thousand_designs_in_it() {
         probability: 0.99,
         ..SpaceSettings::default()
     };
-    let found = space(&task, &[], settings, UNTOLD).expect("there are good designs");
+    let found = space(&task, &[], settings, NO_PROGRESS).expect("there are good designs");
     assert!(found.at_least >= 0.99, "{found:?}");
     // At most 1 % of the box may be bad, and a square of side s has (2 s - 1)²/2 of it beyond the diagonal.
     assert!((0.8 * 0.175..1.2 * 0.175).contains(&found.volume), "{found:?}");
@@ -207,7 +213,7 @@ fn the_largest_box_in_a_triangle_and_a_hundred_thousand_designs_in_it() {
 fn nothing_good_gives_no_box() {
     let bad = Formula(|x| vec![x[0] + 2.0]);
     let task = task(&bad, vec![knob("x", 0.0, 1.0, 0.5, None)], vec![at_most(0, 1.0)]);
-    assert!(space(&task, &[], SpaceSettings::default(), UNTOLD).is_none());
+    assert!(space(&task, &[], SpaceSettings::default(), NO_PROGRESS).is_none());
 }
 
 /// What a design should give and what it gives, which lies evenly within 0.2 of it.
@@ -252,7 +258,7 @@ fn a_box_counts_what_its_designs_may_turn_out_as() {
             probability,
             ..SpaceSettings::default()
         };
-        let found = space(&task, &[vec![0.2]], settings, UNTOLD).unwrap();
+        let found = space(&task, &[vec![0.2]], settings, NO_PROGRESS).unwrap();
         let [low, high] = found.intervals[0];
         let bad = (high - 0.8_f64).max(0.0).powi(2) / (0.8 * (high - low));
         assert!(found.at_least >= probability, "{found:?}");

@@ -10,9 +10,9 @@ use std::sync::LazyLock;
 
 use nalgebra::Complex;
 use qcar_runtime::campaign::{Campaign, Quantity, Role};
-use qcar_runtime::discover::observe::{Kind, Misread, Stimulus, predict, unsteady};
-use qcar_runtime::discover::posterior::{refit, settle};
-use qcar_runtime::discover::{Evidence, Free, Gap, Refit};
+use qcar_runtime::discover::observe::{Kind, Stimulus, TestConditions, predict, unsteady};
+use qcar_runtime::discover::posterior::{add_unsteady, refit};
+use qcar_runtime::discover::{Evidence, Free, Misfit, Refit};
 use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;
 
@@ -150,7 +150,8 @@ fn free(parameter: usize) -> Free {
 /// The worst difference from the first harmonics, relative to these, with and without what is unsteady.
 fn worst(model: &Strut, evidence: &Evidence, role: Role) -> [f64; 2] {
     let values = values(model, 1.0);
-    let added = unsteady(model, &values, &Misread::default(), evidence, role).expect("the model has the sensors");
+    let added =
+        unsteady(model, &values, &TestConditions::default(), evidence, role).expect("the model has the sensors");
     let mut worst = [0.0; 2];
     for mut prediction in predict(model, &values, &[], evidence, role).expect("the model has the sensors") {
         let series = &evidence.series[prediction.series];
@@ -174,10 +175,15 @@ fn what_never_settles_is_predicted_as_it_is_measured() {
         assert!(steady > 0.01, "{steady}");
         assert!(unsteady < 0.003, "{unsteady}");
     }
-    let settled = settle(model, FITTED.clone(), evidence).expect("the model has the sensors");
-    let gap = Gap::of(model, &settled, evidence).expect("the model has the sensors");
-    assert!(gap.fit < 1.0 && gap.held_out < 1.0, "{} {}", gap.fit, gap.held_out);
-    for (free, estimate) in settled.free.iter().zip(&settled.estimate) {
+    let refitted = add_unsteady(model, FITTED.clone(), evidence).expect("the model has the sensors");
+    let misfit = Misfit::of(model, &refitted, evidence).expect("the model has the sensors");
+    assert!(
+        misfit.fit < 1.0 && misfit.held_out < 1.0,
+        "{} {}",
+        misfit.fit,
+        misfit.held_out
+    );
+    for (free, estimate) in refitted.free.iter().zip(&refitted.estimate) {
         let error = estimate / P[free.parameter] - 1.0;
         assert!(error.abs() < 0.01, "parameter {}: {error}", free.parameter);
     }
@@ -217,7 +223,7 @@ const NO_FRICTION: [f64; 2] = [1e-6, 1e-6];
 /// What is unsteady in the sweeps that may be fitted.
 fn unsteady_of(model: &Strut, evidence: &Evidence) -> Vec<Vec<Complex<f64>>> {
     let values = with_friction(model, NO_FRICTION);
-    unsteady(model, &values, &Misread::default(), evidence, Role::Fit).expect("the model has the sensors")
+    unsteady(model, &values, &TestConditions::default(), evidence, Role::Fit).expect("the model has the sensors")
 }
 
 /// What sweeps of a linear axle show, whose pad is seen by a sensor that may be of another quantity and read something at

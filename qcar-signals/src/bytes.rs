@@ -1,4 +1,4 @@
-//! Checked access to the bytes of a file: an access beyond its end is an error with its place, never a panic.
+//! Checked access to the bytes of a file: an access beyond its end is an error with its position, never a panic.
 
 use std::borrow::Cow;
 use std::io;
@@ -6,26 +6,26 @@ use std::io;
 use crate::content::Content;
 use crate::error::{Fault, Place, Read};
 
-/// The order of the bytes of a number.
+/// Byte order of numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Order {
     Little,
     Big,
 }
 
-/// A run of bytes, of a file or unpacked from it.
+/// A range of bytes of a file, or of unpacked bytes.
 #[derive(Clone, Copy)]
 pub(crate) struct Bytes<'a> {
     content: &'a Content<'a>,
-    /// Where the run begins in the content.
+    /// Start of the range in the content.
     start: u64,
     length: u64,
     pub(crate) order: Order,
-    /// The place in the file of the packed block that the content was unpacked from.
+    /// Position in the file of the packed block from which the content was unpacked.
     packed_at: Option<u64>,
 }
 
-/// Bytes that are shown at once of a long run, so that they stay in the cache.
+/// Bytes of one piece of a long range, so that they stay in the cache.
 const PIECE: u64 = 1 << 18;
 
 impl<'a> Bytes<'a> {
@@ -40,7 +40,7 @@ impl<'a> Bytes<'a> {
         }
     }
 
-    /// All bytes that a block of the file at `at` was unpacked to.
+    /// All bytes of the unpacked block of the file at `at`.
     pub(crate) fn unpacked(content: &'a Content<'a>, order: Order, at: u64) -> Self {
         Bytes {
             packed_at: Some(at),
@@ -48,7 +48,7 @@ impl<'a> Bytes<'a> {
         }
     }
 
-    /// The same with numbers in another order.
+    /// The same with another byte order of numbers.
     pub(crate) fn in_order(self, order: Order) -> Self {
         Bytes { order, ..self }
     }
@@ -57,12 +57,12 @@ impl<'a> Bytes<'a> {
         self.length
     }
 
-    /// The place of a byte, for a message.
+    /// The position of a byte, for a message.
     pub(crate) fn place(&self, at: u64) -> Place {
         Place::Byte(self.packed_at.unwrap_or(self.start.saturating_add(at)))
     }
 
-    /// Checks that `count` bytes from `at` on are there, which hold `what`.
+    /// Checks that `count` bytes from `at` on exist; `what` is their meaning, for the message.
     fn check(&self, at: u64, count: u64, what: &str) -> Read<()> {
         if at.checked_add(count).is_some_and(|end| end <= self.length) {
             return Ok(());
@@ -84,7 +84,7 @@ impl<'a> Bytes<'a> {
         }
     }
 
-    /// `count` bytes from `at` on, which hold `what`.
+    /// `count` bytes from `at` on; `what` is their meaning.
     pub(crate) fn take(&self, at: u64, count: u64, what: &str) -> Read<Cow<'a, [u8]>> {
         self.check(at, count, what)?;
         self.content
@@ -97,7 +97,7 @@ impl<'a> Bytes<'a> {
         self.take(0, self.length, what)
     }
 
-    /// `count` bytes from `at` on, shown one piece after the other, each of a whole number of `unit` bytes.
+    /// Passes `count` bytes from `at` on to a function, piece by piece, each of a whole number of `unit` bytes.
     pub(crate) fn pieces(&self, at: u64, count: u64, unit: u64, what: &str, mut show: impl FnMut(&[u8])) -> Read<()> {
         self.check(at, count, what)?;
         let unit = unit.max(1);
@@ -113,7 +113,7 @@ impl<'a> Bytes<'a> {
         Ok(())
     }
 
-    /// The same as a run of bytes that knows its place.
+    /// The same as a range with its position.
     pub(crate) fn part(&self, at: u64, count: u64, what: &str) -> Read<Bytes<'a>> {
         self.check(at, count, what)?;
         Ok(Bytes {
@@ -123,7 +123,7 @@ impl<'a> Bytes<'a> {
         })
     }
 
-    /// Whether the run begins so.
+    /// True if the range begins with these bytes.
     pub(crate) fn starts_with(&self, beginning: &[u8]) -> bool {
         let own = self.take(0, self.length.min(beginning.len() as u64), "a beginning");
         own.is_ok_and(|own| *own == *beginning)
@@ -162,7 +162,7 @@ impl<'a> Bytes<'a> {
     }
 }
 
-/// How a number is stored.
+/// Storage type of a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Number {
     U8,
@@ -178,7 +178,7 @@ pub(crate) enum Number {
 }
 
 impl Number {
-    /// Bytes of one.
+    /// Bytes of a number.
     pub(crate) fn size(self) -> usize {
         match self {
             Number::U8 | Number::I8 => 1,
@@ -188,8 +188,8 @@ impl Number {
         }
     }
 
-    /// The numbers that begin every `stride` bytes of `data`, as many as are whole, behind those of `into`. `data` begins with the
-    /// first of them.
+    /// Appends the numbers that begin every `stride` bytes of `data`, as many as are complete. The first begins at the
+    /// start of `data`.
     pub(crate) fn extend(self, into: &mut Vec<f64>, data: &[u8], stride: usize, order: Order) {
         macro_rules! each {
             ($kind:ty) => {{
@@ -214,19 +214,19 @@ impl Number {
         }
     }
 
-    /// The same alone.
+    /// The same as a new vector.
     pub(crate) fn strided(self, data: &[u8], stride: usize, order: Order) -> Vec<f64> {
         let mut all = Vec::with_capacity(data.len() / stride.max(self.size()) + 1);
         self.extend(&mut all, data, stride, order);
         all
     }
 
-    /// The numbers that lie one after the other in `data`.
+    /// The contiguous numbers in `data`.
     pub(crate) fn all(self, data: &[u8], order: Order) -> Vec<f64> {
         self.strided(data, self.size(), order)
     }
 
-    /// The same of a run of bytes, which are never all in memory beside the numbers.
+    /// The same for a range of bytes, which is never completely in memory beside the numbers.
     pub(crate) fn all_of(self, bytes: &Bytes, what: &str) -> Read<Vec<f64>> {
         let mut all = Vec::with_capacity(bytes.len() as usize / self.size());
         bytes.pieces(0, bytes.len(), self.size() as u64, what, |piece| {
@@ -236,7 +236,7 @@ impl Number {
     }
 }
 
-/// The `N` bytes with which every `stride` bytes of `data` begin, as many as are whole.
+/// The first `N` bytes of every `stride` bytes of `data`, as many as are complete.
 pub(crate) fn heads<const N: usize>(data: &[u8], stride: usize) -> impl Iterator<Item = [u8; N]> {
     let chunks = data.chunks_exact(stride.max(N).max(1));
     let last = chunks.remainder().get(..N).into_iter();
@@ -245,7 +245,7 @@ pub(crate) fn heads<const N: usize>(data: &[u8], stride: usize) -> impl Iterator
         .map(|chunk| chunk.first_chunk().copied().unwrap_or([0; N]))
 }
 
-/// Text of unknown coding: UTF-8 where it is that, else Windows-1252, of which Latin-1 is a part.
+/// Text of unknown encoding: UTF-8 if valid, otherwise Windows-1252, which includes Latin-1.
 pub(crate) fn text(bytes: &[u8]) -> String {
     match std::str::from_utf8(bytes) {
         Ok(text) => text.into(),
@@ -253,7 +253,7 @@ pub(crate) fn text(bytes: &[u8]) -> String {
     }
 }
 
-/// The same, up to the first zero and without white space around it.
+/// The same, up to the first zero and trimmed.
 pub(crate) fn field(bytes: &[u8]) -> String {
     let end = bytes.iter().position(|&byte| byte == 0).unwrap_or(bytes.len());
     text(&bytes[..end]).trim().into()

@@ -1,4 +1,4 @@
-//! The bytes of a file, in memory or still on the disk, from where they are read as they are wanted.
+//! The bytes of a file, in memory or on the disk, from which they are read on request.
 
 use std::borrow::Cow;
 use std::cell::RefCell;
@@ -6,12 +6,12 @@ use std::collections::HashMap;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 
-/// Bytes that are read at once where few are wanted.
+/// Size of a page: bytes that are read at once if few are requested.
 const PAGE: u64 = 1 << 16;
-/// Pages that are kept, since what is wanted next often stands near.
+/// Number of pages that are kept, since the next request is often near.
 const PAGES: usize = 64;
 
-/// What a file holds.
+/// Content of a file.
 pub struct Content<'a>(Where<'a>);
 
 enum Where<'a> {
@@ -23,20 +23,20 @@ struct Disk {
     file: File,
     length: u64,
     pages: RefCell<HashMap<u64, Box<[u8]>>>,
-    /// For what is longer than a page.
+    /// Buffer for ranges longer than a page.
     buffer: RefCell<Vec<u8>>,
 }
 
 impl<'a> Content<'a> {
-    /// Of bytes that are there.
+    /// Content in memory.
     pub fn of_bytes(bytes: impl Into<Cow<'a, [u8]>>) -> Self {
         Content(Where::Memory(bytes.into()))
     }
 
-    /// Of an open file, of which no more than a few megabytes are held at once.
+    /// Content of an open file, of which at most a few megabytes are in memory.
     ///
     /// # Errors
-    /// What the system says where it does not tell how long the file is.
+    /// Fails with the error of the system if the length of the file is unknown.
     pub fn of_file(file: File) -> io::Result<Content<'static>> {
         let length = file.metadata()?.len();
         Ok(Content(Where::Disk(Disk {
@@ -47,7 +47,7 @@ impl<'a> Content<'a> {
         })))
     }
 
-    /// How many bytes there are.
+    /// Number of bytes.
     pub fn length(&self) -> u64 {
         match &self.0 {
             Where::Memory(bytes) => bytes.len() as u64,
@@ -55,15 +55,15 @@ impl<'a> Content<'a> {
         }
     }
 
-    /// The first bytes, at most a page of them.
+    /// The first bytes, at most a page.
     ///
     /// # Errors
-    /// What the system says.
+    /// Fails with the error of the system.
     pub fn beginning(&self) -> io::Result<Cow<'_, [u8]>> {
         self.take(0, self.length().min(PAGE))
     }
 
-    /// Bytes that lie within the file.
+    /// Bytes of a range inside the file.
     pub(crate) fn take(&self, at: u64, count: u64) -> io::Result<Cow<'_, [u8]>> {
         match &self.0 {
             Where::Memory(bytes) => Ok(Cow::Borrowed(within(bytes, at, count)?)),
@@ -76,7 +76,7 @@ impl<'a> Content<'a> {
         }
     }
 
-    /// The same, only shown: nothing is copied that need not be.
+    /// The same, passed to a function without unnecessary copies.
     pub(crate) fn show<T>(&self, at: u64, count: u64, to: impl FnOnce(&[u8]) -> T) -> io::Result<T> {
         match &self.0 {
             Where::Memory(bytes) => Ok(to(within(bytes, at, count)?)),
@@ -107,7 +107,7 @@ impl Disk {
         file.read_exact(into)
     }
 
-    /// Bytes of a page, or of two that lie side by side.
+    /// Bytes of a page, or of two adjacent pages.
     fn near<T>(&self, at: u64, count: u64, to: impl FnOnce(&[u8]) -> T) -> io::Result<T> {
         let (first, from) = (at / PAGE, (at % PAGE) as usize);
         let end = from + count as usize;
@@ -126,7 +126,7 @@ impl Disk {
         Ok(to(&both))
     }
 
-    /// A page, out of those that are kept while it is in use.
+    /// A page, from those in memory if possible.
     fn page(&self, number: u64) -> io::Result<Box<[u8]>> {
         let known = self.pages.borrow_mut().remove(&number);
         if let Some(page) = known {

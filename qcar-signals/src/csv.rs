@@ -40,12 +40,12 @@ pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
     Ok(recording)
 }
 
-/// Whether there are characters that no table has. (`1a` ended texts of DOS.)
+/// True if the text has characters that no table has. (`1a` ended texts of DOS.)
 fn is_binary(text: &str) -> bool {
     text.contains(|letter: char| letter.is_control() && !letter.is_whitespace() && letter != '\u{1a}')
 }
 
-/// Binary data that come here begin like none of the other formats.
+/// Binary data that are recognised as no other format begin like this.
 fn of_no_format(bytes: &[u8]) -> Box<Fault> {
     let beginning = bytes[..bytes.len().min(8)].escape_ascii();
     Fault::new(
@@ -72,8 +72,8 @@ fn decoded(bytes: &[u8]) -> Read<String> {
     }
 }
 
-/// What stands between columns: the first of these that most lines have. A comma comes last, since it may stand in numbers;
-/// spaces where there is nothing else.
+/// The separator of columns: the first of these that most lines contain. The comma is last, since numbers may contain
+/// it; spaces if there is no other.
 fn delimiter(text: &str) -> u8 {
     let lines: Vec<&str> = text.lines().filter(|line| !line.trim().is_empty()).take(HEAD).collect();
     let has_most = |delimiter: &char| 2 * lines.iter().filter(|line| line.contains(*delimiter)).count() > lines.len();
@@ -85,7 +85,7 @@ fn delimiter(text: &str) -> u8 {
 
 type Numbered = (u64, StringRecord);
 
-/// The rows with their lines. Columns that spaces keep apart may have several between them.
+/// The rows with their lines. Several spaces count as one separator.
 fn rows(text: &str, delimiter: u8) -> impl Iterator<Item = Read<Numbered>> {
     let mut reader = ReaderBuilder::new();
     let reader = reader
@@ -148,7 +148,7 @@ fn fill(text: &str, delimiter: u8, decimals: Decimals, columns: Vec<Column>, fir
     Ok((Filled { columns, numbers }, lines))
 }
 
-/// How numbers are written.
+/// Notation of numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Decimals {
     /// 1234.5 or 1,234.5
@@ -158,7 +158,8 @@ enum Decimals {
 }
 
 impl Decimals {
-    /// What the numbers of the upper rows can be read as. Where both are possible, a lone comma or point is the decimal one.
+    /// The notation of the numbers in the upper rows. If both are possible, a single comma or point is the decimal
+    /// separator.
     fn of(head: &[Numbered], delimiter: u8) -> Read<Decimals> {
         if delimiter == b',' {
             return Ok(Decimals::Point);
@@ -208,7 +209,7 @@ impl Decimals {
         }
     }
 
-    /// The number in a cell, not a number for a missing one; nothing where the cell holds anything else.
+    /// The number in a cell, NaN for a missing one; `None` if the cell contains anything else.
     fn number(self, cell: &str) -> Option<f64> {
         let cell = cell.trim();
         if is_missing(cell) {
@@ -241,7 +242,7 @@ impl Decimals {
     }
 }
 
-/// Made of digits, signs, separators and an exponent.
+/// True for a text of digits, signs, separators and an exponent.
 fn looks_like_a_number(cell: &str) -> bool {
     cell.contains(|c: char| c.is_ascii_digit())
         && cell.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | ','))

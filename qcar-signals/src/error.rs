@@ -1,4 +1,4 @@
-//! Why a file cannot be read, and where in it.
+//! Errors of reading a file, with the position in it.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -9,28 +9,28 @@ use thiserror::Error;
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("{file}{separator} {fault}", file = .file.display(), separator = .fault.separator())]
 pub struct ReadError {
-    /// The file, as it was opened.
+    /// The path as it was opened.
     pub file: PathBuf,
-    /// What is wrong with it.
+    /// The fault.
     pub fault: Box<Fault>,
 }
 
-/// One thing that is wrong with a file. The texts are fragments of one sentence, as `Display` joins them.
+/// A fault of a file. The texts are fragments of one sentence, as `Display` joins them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
-    /// Where in the file.
+    /// Position in the file.
     pub place: Place,
-    /// The channel concerned, where it is known.
+    /// The channel, if it is known.
     pub channel: Option<String>,
-    /// What is there.
+    /// What was found.
     pub found: String,
-    /// What belongs there.
+    /// What was expected.
     pub expected: String,
-    /// What to do about it.
+    /// Remedy.
     pub remedy: String,
 }
 
-/// A place in a file. Lines count from 1, bytes from 0.
+/// A position in a file. Lines count from 1, bytes from 0.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Place {
     /// The file as a whole.
@@ -41,13 +41,13 @@ pub enum Place {
     Line(u64),
     /// A cell of a text table: its line and the name or number of its column.
     Cell(u64, String),
-    /// A variable of a MAT file, a dataset of a UFF file or the like, by its own name.
+    /// A named part: a variable of a MAT file, a dataset of a UFF file or the like.
     Item(String),
     /// A cell or a range of a worksheet: sheet, and cell as Excel writes it.
     Sheet(String, String),
 }
 
-/// What readers return.
+/// Result of a reader.
 pub(crate) type Read<T> = Result<T, Box<Fault>>;
 
 impl fmt::Display for Place {
@@ -76,7 +76,7 @@ impl fmt::Display for Fault {
 }
 
 impl Fault {
-    /// What stands between the name of the file and the fault, which may begin with a place.
+    /// Text between the name of the file and the fault; the fault may begin with a position.
     fn separator(&self) -> char {
         if self.place == Place::File && self.channel.is_none() {
             ':'
@@ -85,7 +85,7 @@ impl Fault {
         }
     }
 
-    /// A fault that concerns no single channel; see the fields for how to word it.
+    /// A fault without a channel; see the fields for the wording.
     pub(crate) fn new(
         place: Place,
         found: impl Into<String>,
@@ -101,7 +101,7 @@ impl Fault {
         })
     }
 
-    /// The file ends before what it promises.
+    /// The file ends before its declared content.
     pub(crate) fn cut_off(place: Place, found: impl Into<String>, expected: impl Into<String>) -> Box<Self> {
         Fault::new(
             place,
@@ -111,12 +111,12 @@ impl Fault {
         )
     }
 
-    /// A file whose parts contradict each other.
+    /// Parts of the file contradict each other.
     pub(crate) fn damaged(place: Place, found: impl Into<String>, expected: impl Into<String>) -> Box<Self> {
         Fault::new(place, found, expected, "the file is damaged: copy or export it again")
     }
 
-    /// The same fault, of this channel unless one is named already.
+    /// The same fault for this channel, unless it already names one.
     pub(crate) fn of(mut self: Box<Self>, channel: &str) -> Box<Self> {
         self.channel.get_or_insert_with(|| channel.into());
         self

@@ -174,7 +174,7 @@ impl Sheet {
         let filled = self.fill(layout.columns, first, count)?;
         if let Some(&below) = numbers.get(layout.first + count) {
             let place = self.place(below, 0);
-            recording.pass_over(&self.name, place, "what stands below the table, after an empty row");
+            recording.pass_over(&self.name, place, "the cells below the table, after an empty row");
         }
         filled.add_to(recording, &self.name, &|column, row| {
             let row = row.map_or(first.saturating_sub(1), |row| first + row as u32);

@@ -5,14 +5,14 @@ use std::collections::BTreeSet;
 use crate::error::{Fault, Place};
 use crate::signal::{Recording, Signal, full_name, is_called};
 
-/// How many channels an error lists.
+/// Number of channels in an error.
 const LISTED: usize = 6;
 
-/// Which channels of a file are to be read.
+/// Channels of a file that are read.
 pub enum Wanted<'a> {
     /// All of them.
     All,
-    /// Those that one of these patterns may mean, as [`Recording::find`] takes them.
+    /// Those that match one of these patterns, as in [`Recording::find`].
     These(&'a [String]),
     /// None. If the format interleaves its channels, so that one is not read without going through all, a summary of each is made
     /// instead ([`Samples::made_summary`](crate::samples::Samples::made_summary)).
@@ -20,7 +20,7 @@ pub enum Wanted<'a> {
 }
 
 impl Wanted<'_> {
-    /// Whether a channel is to be read.
+    /// True if a channel is to be read.
     pub(crate) fn has(&self, group: &str, name: &str) -> bool {
         match self {
             Wanted::All => true,
@@ -31,12 +31,12 @@ impl Wanted<'_> {
         }
     }
 
-    /// Whether this channel is to be read.
+    /// True if this channel is to be read.
     pub fn means(&self, signal: &Signal) -> bool {
         self.has(&signal.source.group, &signal.name)
     }
 
-    /// Whether a channel whose name begins so may be to be read.
+    /// True if a channel whose name begins like this may have to be read.
     pub(crate) fn may_begin(&self, beginning: &str) -> bool {
         match self {
             Wanted::All => true,
@@ -50,11 +50,11 @@ impl Wanted<'_> {
 }
 
 impl Recording {
-    /// The channel that `pattern` means: a name, `group/name`, or either with `*` for any characters and `?` for one. A
-    /// channel that is called so to the letter goes before others.
+    /// The channel that matches `pattern`: a name, `group/name`, or either with `*` for any characters and `?` for one.
+    /// An exact match takes precedence.
     ///
     /// # Errors
-    /// No such channel, with those of similar names; or several.
+    /// Fails if no channel matches, with similar names, or if several do.
     pub fn find(&self, pattern: &str) -> Result<&Signal, Box<Fault>> {
         let exact = self.signals.iter().any(|signal| signal.is_called(pattern));
         let passed_over = self.passed_over.iter().any(|passed| passed.name == pattern);
@@ -73,7 +73,7 @@ impl Recording {
         }
     }
 
-    /// Whether some channel is meant by `pattern`, be it one of several or one that could not be read.
+    /// True if a channel matches `pattern`, even if it is one of several or could not be read.
     pub fn has(&self, pattern: &str) -> bool {
         let passed_over = self.passed_over.iter().any(|passed| passed.name == pattern);
         let mut signals = self.signals.iter();
@@ -90,7 +90,7 @@ impl Recording {
         Fault::new(Place::File, found, "a channel of the file", remedy).of(pattern)
     }
 
-    /// Channels whose names share most pairs of letters with a pattern, at least a third, the nearest first.
+    /// Channels whose names share at least a third of the letter pairs of a pattern, most similar first.
     fn near(&self, pattern: &str) -> Vec<&Signal> {
         let wanted = pairs(pattern);
         let mut near: Vec<(f64, &Signal)> = self
@@ -138,11 +138,11 @@ fn pairs(name: &str) -> BTreeSet<(char, char)> {
     letters.windows(2).map(|two| (two[0], two[1])).collect()
 }
 
-/// Whether a name fits a pattern of `*` and `?`.
+/// True if a name matches a pattern of `*` and `?`.
 fn fits(pattern: &str, name: &str) -> bool {
     let (pattern, name): (Vec<char>, Vec<char>) = (pattern.chars().collect(), name.chars().collect());
     let (mut at, mut of) = (0, 0);
-    // Where to go on when what follows the last `*` does not fit: it takes one character more.
+    // Position to which matching returns if the part after the last `*` fails; the `*` then takes one more character.
     let mut last_star = None;
     while of < name.len() {
         match pattern.get(at) {

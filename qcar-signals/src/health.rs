@@ -1,13 +1,13 @@
-//! Flaws that the samples of a channel show.
+//! Flaws of the samples of a channel.
 
 /// A flaw of a channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flaw {
-    /// What it is.
+    /// Kind.
     pub kind: FlawKind,
-    /// Indices of the first and last sample concerned.
+    /// Positions of the first and last sample concerned.
     pub samples: (usize, usize),
-    /// How often it was found.
+    /// Number of occurrences.
     pub count: usize,
 }
 
@@ -16,16 +16,16 @@ pub struct Flaw {
 pub enum FlawKind {
     /// All samples have this value.
     Dead(f64),
-    /// The signal is cut off at this value.
+    /// The signal is clipped at this value.
     Clipped(f64),
     /// One or two samples jump to this value and back; `samples` is the largest.
     Spike(f64),
-    /// The mean runs away by so much from the beginning to the end.
+    /// The mean drifts by this much from the beginning to the end.
     Drift(f64),
 }
 
-/// Flaws of a channel whose samples come evenly and are finite. `drift` asks for that too: only a quantity whose mean is known to
-/// be steady has any.
+/// Flaws of a channel with evenly spaced, finite samples. `drift` includes drift, for quantities whose mean is known to
+/// be constant.
 pub fn flaws(samples: &[f64], drift: bool) -> Vec<Flaw> {
     let low = samples.iter().copied().fold(f64::INFINITY, f64::min);
     let high = samples.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -42,14 +42,14 @@ pub fn flaws(samples: &[f64], drift: bool) -> Vec<Flaw> {
     clipped.chain(spikes(samples, high - low)).chain(drift).collect()
 }
 
-/// Samples at the extreme in a row, at least, that are clipped and no peak.
+/// Smallest number of successive extreme samples that are clipped instead of a peak.
 const FLAT: usize = 4;
-/// A smooth peak falls off by 8 of its smallest steps within its own width before it counts as flat; a clipped one by many more.
+/// Smallest drop at the sides of a clipped peak in steps of its resolution; a smooth peak of its width drops by less.
 const STEEP: f64 = 30.0;
-/// Fewer different values than these make steps, as those of a valve, and no signal that was cut.
+/// Smallest number of different values of a clipped signal; with fewer it switches in steps, like a valve.
 const LEVELS: usize = 16;
 
-/// Flat stretches at an extreme that the signal enters and leaves steeply.
+/// Flat parts at an extreme that the signal enters and leaves steeply.
 fn clipping(samples: &[f64], extreme: f64) -> Option<Flaw> {
     let step = smallest_step(samples)?;
     let (mut found, mut at): (Option<Flaw>, usize) = (None, 0);
@@ -69,7 +69,8 @@ fn clipping(samples: &[f64], extreme: f64) -> Option<Flaw> {
     found
 }
 
-/// The smallest difference between neighbours, if there are enough different values: that of a converter, or next to nothing.
+/// Smallest difference between neighbours, if there are enough different values: the resolution of a converter, or
+/// nearly zero.
 fn smallest_step(samples: &[f64]) -> Option<f64> {
     let mut levels: Vec<f64> = Vec::new();
     let new = |value: &f64, levels: &[f64]| !levels.contains(value);
@@ -91,18 +92,19 @@ fn is_cut(samples: &[f64], at: usize, length: usize, step: f64) -> bool {
     steep(before) && steep(samples.get(at + 2 * length - 1))
 }
 
-/// Neighbours to each side that a spike is compared with.
+/// Number of neighbours on each side that a spike is compared with.
 const NEIGHBOURS: usize = 100;
-/// How many times further than any of them a spike stands out.
+/// Smallest distance of a spike, relative to the largest distance of its neighbours.
 const STANDS_OUT: f64 = 10.0;
-/// Neighbours to each side whose steps a spike is compared with: in an impact, all is rough.
+/// Number of neighbours on each side whose steps a spike is compared with: an impact is rough everywhere.
 const NEAR: usize = 10;
-/// How many times larger than any of their steps a spike is.
+/// Smallest height of a spike, relative to the largest of their steps.
 const ROUGH: f64 = 2.0;
-/// The share of the channel's range that a spike has at least.
+/// Smallest height of a spike, relative to the range of the channel.
 const OF_RANGE: f64 = 0.01;
 
-/// Samples far from the median of the five around them, where no neighbour is. The first and last two have no five around them.
+/// Samples far from the median of the five around them, while no neighbour is. The first and last two samples are not
+/// tested.
 fn spikes(samples: &[f64], range: f64) -> Option<Flaw> {
     let ends = [0.0; 2];
     let inner = samples.windows(5).map(|five| five[2] - median(five));
@@ -131,14 +133,15 @@ fn median(five: &[f64]) -> f64 {
     sorted[sorted.len() / 2]
 }
 
-/// Parts of a record whose means show a drift.
+/// Number of parts of a record whose means show a drift.
 const PARTS: usize = 10;
-/// A drift is this share of the signal's RMS value, at least.
+/// Smallest drift, relative to the RMS of the signal.
 const OF_RMS: f64 = 0.3;
-/// And so many of its standard errors, which the means scatter by: of eight degrees of freedom, less than 1 in 10 000 by chance.
+/// Smallest drift in standard errors from the scatter of the means: with eight degrees of freedom, less than 1 in 10
+/// 000 by chance.
 const SURE: f64 = 8.0;
 
-/// The line through the means of the parts, where they lie on one.
+/// The line through the means of the parts, if they are close to one.
 fn running_away(samples: &[f64]) -> Option<Flaw> {
     let length = samples.len() / PARTS;
     if length < 2 {

@@ -1,7 +1,8 @@
-//! Measured files: what a rig, a logger or another program wrote, read into channels.
+//! Reads measured files of rigs, loggers and other programs into channels.
 //!
-//! The crate knows formats and nothing of axles. Every reader works on the bytes of the file, checks each claimed size
-//! against them before it takes memory, and never panics: what cannot be read is an error with its place.
+//! The crate knows file formats, but nothing of axles. Every reader works on the bytes of the file, checks each
+//! declared size against them before it allocates memory, and never panics: unreadable data are an error with a
+//! position.
 //!
 //! The modules stand in the order of the data; a file uses only what is declared above it.
 

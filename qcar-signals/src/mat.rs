@@ -40,7 +40,7 @@ pub(crate) fn read(file: Bytes, wanted: &Wanted) -> Read<Recording> {
     match field(&file.take(0, VERSION as u64, "the header")?) {
         text if text.contains("7.3") => Err(Fault::cut_off(
             Place::Byte(file.len()),
-            "a header of version 7.3 and nothing of HDF5",
+            "a header of version 7.3 without HDF5 data",
             "the data after the header",
         )),
         _ => layout::recording("MAT 5", v5::variables(file, wanted)?, wanted),

@@ -1,4 +1,4 @@
-//! The entry point: the format of a file, recognised by its content, and its channels.
+//! Entry point: recognises the format of a file by its content, and reads its channels.
 
 use std::fs::File;
 use std::io;
@@ -13,18 +13,17 @@ use crate::find::Wanted;
 use crate::signal::Recording;
 use crate::{crg, csv, excel, mat, mdf, rpc, tdms, uff};
 
-/// What a file begins with that gzip packed.
+/// First bytes of a file compressed by gzip.
 const GZIP: &[u8] = b"\x1f\x8b";
 
-/// Reads a file of any format that this crate knows, which gzip may have packed. The content decides which it is, not the
-/// file's ending.
+/// Reads a file of any format of this crate, also compressed by gzip. The content determines the format, not the name.
 ///
-/// Memory: eight bytes for each sample, two for each of RPC III; of a file that is packed or text also what it unpacks to, which
-/// is at most about a thousand times what is packed. Claimed sizes are checked against the bytes that are there before memory is
-/// taken for them.
+/// Memory: eight bytes for each sample, two for RPC III; for a packed or text file also its unpacked size, which is at
+/// most about a thousand times the packed one. Declared sizes are checked against the existing bytes before memory is
+/// allocated.
 ///
 /// # Errors
-/// A file that cannot be opened, is of no known format, was cut off, is damaged or packed twice, with the place in it.
+/// Fails if the file cannot be opened, has an unknown format, is cut off, damaged or packed twice, with the position.
 pub fn read(file: &Path) -> Result<Recording, ReadError> {
     let opened = File::open(file).and_then(Content::of_file);
     let recognised = opened.map_err(|error| unreadable(&error)).and_then(|content| {
@@ -49,12 +48,12 @@ fn unreadable(error: &io::Error) -> Box<Fault> {
     Fault::new(Place::File, error.to_string(), "a readable file", remedy)
 }
 
-/// True of what gzip has packed, by its first bytes.
+/// True for content compressed by gzip, from its first bytes.
 pub fn is_packed(beginning: &[u8]) -> bool {
     beginning.starts_with(GZIP)
 }
 
-/// What gzip has packed, unpacked as it is read; errors of reading are those of `packed`, and of data that are cut off or damaged.
+/// Unpacks gzip while reading; errors are those of `packed`, and of data that are cut off or damaged.
 pub fn unpacked<R: io::Read>(packed: R) -> impl io::Read {
     MultiGzDecoder::new(packed)
 }
@@ -74,16 +73,16 @@ fn whole(mut content: impl io::Read, packed: usize) -> Read<Vec<u8>> {
 /// The same for the content of a file, unpacked.
 ///
 /// # Errors
-/// As [`read`], without the file.
+/// Fails as [`read`] does, without the name of the file.
 pub fn recognise(bytes: &[u8]) -> Read<Recording> {
     channels(&Content::of_bytes(bytes), &Wanted::All)
 }
 
-/// The same with the samples of the wanted channels alone, where the format lets the others be left out; all channels are listed.
-/// Memory as in [`read`], for these samples and the times of them.
+/// The same with the samples of the wanted channels only, if the format allows skipping the others; all channels are
+/// listed. Memory as in [`read`], for these samples and their times.
 ///
 /// # Errors
-/// As [`recognise`]; what is wrong with samples that are not wanted may go unseen.
+/// Fails as [`recognise`] does; faults in samples that are not wanted may not be detected.
 pub fn channels(content: &Content, wanted: &Wanted) -> Read<Recording> {
     let beginning = content.beginning().map_err(|error| unreadable(&error))?;
     let file = Bytes::of_file(content, Order::Little);
@@ -115,7 +114,7 @@ pub fn channels(content: &Content, wanted: &Wanted) -> Read<Recording> {
     in_memory(&file.all("the file")?)
 }
 
-/// A file of a format that is read from the first byte to the last.
+/// A file of a format that is read as a whole.
 fn in_memory(bytes: &[u8]) -> Read<Recording> {
     if bytes.starts_with(excel::MAGIC) {
         return excel::read(bytes);

@@ -1,45 +1,45 @@
-//! Samples at other instants, by a filter of linear phase: a windowed sinc, whose delay is taken out.
+//! Resampling by a filter of linear phase: a windowed sinc, without its delay.
 //!
-//! Of the lower of both rates, the pass band reaches up to [`PASS`], where amplitudes are kept within [`RIPPLE`], and the stop
-//! band begins at [`STOP`], half of it: what lies above is lowered to [`RIPPLE`] and does not fold back.
+//! The pass band reaches up to [`PASS`] of the lower of both rates, with amplitudes accurate to [`RIPPLE`]. The stop
+//! band begins at [`STOP`], half the lower rate: higher frequencies are attenuated to [`RIPPLE`] and do not alias.
 
-/// End of the pass band as a share of the lower rate.
+/// End of the pass band relative to the lower rate.
 pub const PASS: f64 = 0.4;
-/// Begin of the stop band as a share of the lower rate.
+/// Start of the stop band relative to the lower rate.
 pub const STOP: f64 = 0.5;
-/// Largest relative error of an amplitude in the pass band, and largest amplitude that is left of 1 in the stop band: -80 dB.
+/// Largest relative error of an amplitude in the pass band, and largest gain in the stop band: -80 dB.
 pub const RIPPLE: f64 = 1e-4;
 
-/// Entries of the kernel's table from one zero of its sinc to the next; a straight line between them is off by 1e-6.
+/// Entries of the kernel's table between two zeros of its sinc; linear interpolation between them has an error of 1e-6.
 const FINENESS: usize = 1024;
 
-/// Evenly spaced instants.
+/// Evenly spaced times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
-    /// The first, s.
+    /// First time, s.
     pub start: f64,
-    /// Hz.
+    /// Sample rate, Hz.
     pub rate: f64,
-    /// How many.
+    /// Number of samples.
     pub count: usize,
 }
 
 impl Grid {
-    /// The instant of a sample, s.
+    /// Time of a sample, s.
     pub fn time(&self, at: usize) -> f64 {
         self.start + at as f64 / self.rate
     }
 
-    /// The last instant, s.
+    /// Last time, s.
     pub fn end(&self) -> f64 {
         self.time(self.count.saturating_sub(1))
     }
 }
 
-/// `samples`, taken at the instants `from`, at the instants `to`, which lie among them.
+/// Resamples `samples`, taken at the times `from`, at the times `to`, which must be inside them.
 ///
-/// Within [`reach`] of an end of the samples, their continuation is taken as turned about the last one: values there are
-/// as good as that is true. A constant stays as it is, to the last digits.
+/// Within [`reach`] of an end, the samples are continued by point reflection about the last one, so values there are
+/// only as accurate as this assumption. A constant is preserved to rounding.
 pub fn resample(samples: &[f64], from: Grid, to: Grid) -> Vec<f64> {
     let kernel = Kernel::between(from.rate, to.rate);
     let at = |k: usize| (to.time(k) - from.start) * from.rate;
@@ -51,21 +51,21 @@ pub fn reach(from: f64, to: f64) -> f64 {
     Kernel::half_length(from.min(to))
 }
 
-/// A low-pass as a table over the distance from its middle.
+/// A low-pass as a table over the distance from its centre.
 struct Kernel {
-    /// Samples to each side.
+    /// Reach to each side, in samples.
     half: f64,
-    /// From the middle outwards, `fineness` entries a sample.
+    /// Values from the centre outwards, `fineness` entries per sample.
     table: Vec<f64>,
     fineness: f64,
 }
 
 impl Kernel {
-    /// By Kaiser's formulas for the ripple and the width between pass and stop band.
+    /// Designed by Kaiser's formulas for the ripple and the transition width.
     fn between(from: f64, to: f64) -> Kernel {
         let lower = from.min(to);
         let half = Self::half_length(lower) * from;
-        // The middle of the slope, cycles a sample of `from`.
+        // Centre of the transition, cycles per sample of `from`.
         let cutoff = 0.5 * (PASS + STOP) * lower / from;
         let fineness = (2.0 * cutoff * FINENESS as f64).max(1.0);
         let entries = (half * fineness).ceil() as usize + 2;
@@ -96,7 +96,7 @@ impl Kernel {
         }
     }
 
-    /// The value at a place, counted in samples.
+    /// Value at a position, in samples.
     fn at(&self, samples: &[f64], place: f64) -> f64 {
         let (first, last) = (
             (place - self.half).ceil() as isize,
@@ -112,7 +112,7 @@ impl Kernel {
     }
 }
 
-/// A sample, or beyond an end what comes of turning the samples about the last one there.
+/// A sample; beyond an end, the point reflection about the last one.
 fn continued(samples: &[f64], at: isize) -> f64 {
     let last = samples.len() as isize - 1;
     let mirrored = if at < 0 { -at } else { 2 * last - at };

@@ -1,4 +1,4 @@
-//! The samples of a channel, as narrow as the file stores them.
+//! The samples of a channel in the type in which the file stores them.
 
 use std::ops::Range;
 
@@ -12,7 +12,7 @@ pub struct Samples(Stored);
 enum Stored {
     Doubles(Vec<f64>),
     Singles(Vec<f32>),
-    /// To be taken times a factor.
+    /// Values to be multiplied by a factor.
     Shorts(Vec<i16>, f64),
     /// They were summarised as they were read, and none is kept.
     Summarised(Box<Summary>),
@@ -24,7 +24,7 @@ impl Samples {
         Samples(Stored::Singles(samples))
     }
 
-    /// Short integers, each of which is to be taken times a factor.
+    /// Short integers, each to be multiplied by a factor.
     pub(crate) fn shorts(stored: Vec<i16>, factor: f64) -> Self {
         Samples(Stored::Shorts(stored, factor))
     }
@@ -44,15 +44,15 @@ impl Samples {
         }
     }
 
-    /// Whether there are none.
+    /// True without samples.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// One of them.
+    /// A sample.
     ///
     /// # Panics
-    /// There is none at this index.
+    /// If there is none at this position.
     pub fn at(&self, index: usize) -> f64 {
         match &self.0 {
             Stored::Doubles(own) => own[index],
@@ -62,15 +62,15 @@ impl Samples {
         }
     }
 
-    /// All of them.
+    /// All samples.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = f64> + ExactSizeIterator + Clone + '_ {
         self.range(0..self.len())
     }
 
-    /// Those of these indices.
+    /// The samples at these positions.
     ///
     /// # Panics
-    /// As it goes on, where there is none at an index.
+    /// During iteration, if there is none at a position.
     pub fn range(&self, of: Range<usize>) -> impl DoubleEndedIterator<Item = f64> + ExactSizeIterator + Clone + '_ {
         of.map(|index| self.at(index))
     }
@@ -124,7 +124,7 @@ impl<T: AsRef<[f64]>> PartialEq<T> for Samples {
     }
 }
 
-/// Of the values, however they are stored.
+/// Equality of values, for any storage type.
 impl PartialEq for Samples {
     fn eq(&self, other: &Self) -> bool {
         self.iter().eq(other.iter())

@@ -1,11 +1,11 @@
-//! Units in SI: the factor, and the powers of kilogram, metre and second.
+//! Units in SI: factor, and exponents of kilogram, metre and second.
 
 use crate::units::{bare, is_unit};
 
 /// A unit in SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Si {
-    /// A value in SI is `value * multiply / divide`: two numbers, so that 5 mm are 0.005 m to the last digit.
+    /// A value in SI is `value * multiply / divide`: two numbers, so that 5 mm are exactly 0.005 m.
     pub multiply: f64,
     /// See `multiply`.
     pub divide: f64,
@@ -13,7 +13,8 @@ pub struct Si {
     pub dimension: [i32; 3],
 }
 
-/// Symbols that take no prefix. `g` is the standard acceleration: channels of rigs are no masses, and `kg` stands alone.
+/// Symbols without a prefix. `g` is the standard acceleration, since channels of rigs are no masses; `kg` is a separate
+/// symbol.
 const ALONE: &[(&str, f64, f64, [i32; 3])] = &[
     ("1", 1.0, 1.0, [0, 0, 0]),
     ("rad", 1.0, 1.0, [0, 0, 0]),
@@ -66,8 +67,8 @@ const PREFIXES: &[(&str, f64, f64)] = &[
     ("G", 1e9, 1.0),
 ];
 
-/// What a unit is in SI, such as `m/s^2`, `m/s²`, `g`, `mm`, `kN` or `N*s/mm`; nothing where it is not known, such as `V`.
-/// Everything after a `/` divides.
+/// A unit in SI, such as `m/s^2`, `m/s²`, `g`, `mm`, `kN` or `N*s/mm`; `None` for an unknown one, such as `V`. All
+/// factors after a `/` are in the denominator.
 pub fn in_si(unit: &str) -> Option<Si> {
     let plain = bare(unit).replace("**", "^").replace('²', "^2").replace('³', "^3");
     let mut parts = plain.split('/');
@@ -75,7 +76,7 @@ pub fn in_si(unit: &str) -> Option<Si> {
     parts.try_fold(above, |above, below| Some(per(above, product(below)?)))
 }
 
-/// Whether a text is a unit at all, be it one that is none of mechanics, such as `V` or `°C`.
+/// True if a text is a unit, including non-mechanical ones such as `V` or `°C`.
 pub fn is_known(unit: &str) -> bool {
     is_unit(unit) || in_si(unit).is_some()
 }
@@ -94,7 +95,7 @@ fn product(text: &str) -> Option<Si> {
     factors.try_fold(one, |product, text| Some(times(product, factor(text)?)))
 }
 
-/// A symbol and its power: `s`, `s^2`, `s2` or `s^-2`.
+/// A symbol and its exponent: `s`, `s^2`, `s2` or `s^-2`.
 fn factor(text: &str) -> Option<Si> {
     let symbol = text.trim_end_matches(|c: char| c.is_ascii_digit());
     let symbol = symbol.strip_suffix('-').unwrap_or(symbol);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::error::{Fault, Place, Read};
 use crate::samples::Samples;
 
-/// All that a file holds.
+/// Contents of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
     /// The format and its version, such as `MDF 4.10`.
@@ -14,66 +14,67 @@ pub struct Recording {
     pub signals: Vec<Signal>,
     /// Single values beside them.
     pub scalars: Vec<Scalar>,
-    /// What is in the file and not here, and why.
+    /// Parts of the file that were left out, with reasons.
     pub passed_over: Vec<PassedOver>,
 }
 
 /// A channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Signal {
-    /// The name that the file gives.
+    /// Name in the file.
     pub name: String,
-    /// The unit as the file writes it; empty where it gives none.
+    /// Unit as in the file; empty without one.
     pub unit: String,
-    /// When the samples were taken.
+    /// Times of the samples.
     pub time: TimeBase,
-    /// Physical values in `unit`. None where the channel was not [`Wanted`](crate::find::Wanted); then its time may be unknown, too.
+    /// Physical values in `unit`; empty if the channel was not [`Wanted`](crate::find::Wanted), whose time may then be
+    /// unknown too.
     pub samples: Samples,
-    /// Texts that stand for values of a channel of states, such as gears.
+    /// Texts for the values of a channel of states, such as gears.
     pub labels: Vec<(f64, String)>,
-    /// Where in the file it comes from.
+    /// Source in the file.
     pub source: Source,
 }
 
-/// Where a channel comes from.
+/// Source of a channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Source {
-    /// The group, sheet or variable; empty in a format that has none.
+    /// Group, sheet or variable; empty in a format without them.
     pub group: String,
-    /// Its place in the file.
+    /// Position in the file.
     pub place: Place,
 }
 
-/// When the samples of a channel were taken, in seconds.
+/// Times of the samples of a channel, s.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TimeBase {
-    /// Evenly: the first sample at `start`, then one every `step`.
+    /// Evenly spaced: the first sample at `start`, then one every `step`.
     Even {
         /// Time of the first sample, s.
         start: f64,
-        /// From sample to sample, s.
+        /// Sample interval, s.
         step: f64,
     },
-    /// At these times, finite and never falling; as many as there are samples.
+    /// These times, finite and never decreasing; one for each sample.
     Times(Arc<[f64]>),
-    /// The file does not say.
+    /// Not in the file.
     Unknown,
 }
 
 /// A single value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scalar {
-    /// The name that the file gives.
+    /// Name in the file.
     pub name: String,
-    /// The unit as the file writes it.
+    /// Unit as in the file.
     pub unit: String,
-    /// What it is.
+    /// The value.
     pub value: Value,
-    /// Its place in the file.
+    /// Position in the file.
     pub place: Place,
 }
 
-/// What a single value is.
+/// Type of a single value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// A number.
@@ -86,14 +87,14 @@ pub enum Value {
     Formula(String),
 }
 
-/// What a file has and a recording has not.
+/// A part of a file that was left out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PassedOver {
-    /// The channel or part of the file.
+    /// The channel or part.
     pub name: String,
-    /// Its place in the file.
+    /// Position in the file.
     pub place: Place,
-    /// Why.
+    /// Reason.
     pub why: String,
 }
 
@@ -118,7 +119,7 @@ impl Recording {
     /// The channel of this name, which may be written as `group/name`.
     ///
     /// # Errors
-    /// No such channel, or several: then the error names the groups that have it.
+    /// Fails if there is no such channel, or if several groups have it; the error names them.
     pub fn signal(&self, name: &str) -> Result<&Signal, Box<Fault>> {
         let named: Vec<&Signal> = self.signals.iter().filter(|signal| signal.is_called(name)).collect();
         match named.as_slice() {
@@ -144,24 +145,24 @@ impl Signal {
         is_called(name, &self.source.group, &self.name)
     }
 
-    /// `group/name`, or the name where there is no group.
+    /// `group/name`, or the name without a group.
     pub fn full_name(&self) -> String {
         full_name(&self.source.group, &self.name)
     }
 
-    /// The same with the place in the file.
+    /// The same with the position in the file.
     fn qualified(&self) -> String {
         format!("`{}` at {}", self.full_name(), self.source.place)
     }
 }
 
-/// Whether `text` is the name of a channel or `group/name`.
+/// True if `text` is the name of a channel or `group/name`.
 pub(crate) fn is_called(text: &str, group: &str, name: &str) -> bool {
     let with_group = text.strip_suffix(name).and_then(|before| before.strip_suffix('/'));
     name == text || with_group.is_some_and(|before| before == group && !group.is_empty())
 }
 
-/// `group/name`, or the name where there is no group.
+/// `group/name`, or the name without a group.
 pub(crate) fn full_name(group: &str, name: &str) -> String {
     match group {
         "" => name.into(),
@@ -173,7 +174,7 @@ impl TimeBase {
     /// A time base of these times.
     ///
     /// # Errors
-    /// The first time that is not finite or earlier than the one before: its index, and what is wrong.
+    /// Fails at the first time that is not finite or earlier than the one before, with its position and the fault.
     pub(crate) fn from_times(times: Vec<f64>) -> Result<Self, (usize, String)> {
         for (at, &time) in times.iter().enumerate() {
             let before = if at == 0 { f64::NEG_INFINITY } else { times[at - 1] };
@@ -196,7 +197,7 @@ impl TimeBase {
         }
     }
 
-    /// Samples a second, where they come evenly: every step within 1 % of the mean step.
+    /// Samples per second, if they are evenly spaced: every step within 1 % of the mean step.
     pub fn rate(&self) -> Option<f64> {
         match self {
             TimeBase::Even { step, .. } => Some(1.0 / step),
@@ -216,7 +217,7 @@ impl TimeBase {
 /// An even time base.
 ///
 /// # Errors
-/// A step that is not a positive number, or a start that is not a number.
+/// Fails if the step is not a positive number, or the start is NaN.
 pub(crate) fn evenly(start: f64, step: f64, place: Place) -> Read<TimeBase> {
     if step.is_finite() && step > 0.0 && start.is_finite() {
         return Ok(TimeBase::Even { start, step });

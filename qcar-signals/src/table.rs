@@ -1,4 +1,4 @@
-//! What a table holds, whatever it is stored in: rows for people on top, then names and units, then columns of numbers.
+//! Contents of a table in any format: headings, then names and units, then columns of numbers.
 
 use crate::error::{Fault, Place, Read};
 use crate::signal::{Recording, Signal, Source, TimeBase};
@@ -7,15 +7,15 @@ use crate::units::{bare, in_seconds, is_time, is_unit, name_and_unit, seconds};
 /// A cell of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Cell {
-    /// Nothing, or what stands for a missing value.
+    /// Empty, or a text for a missing value.
     Missing,
     Number(f64),
     Text(String),
 }
 
-/// Where the numbers begin, and what they are.
+/// Start and columns of the numbers.
 pub(crate) struct Layout {
-    /// The first row of numbers, an index into the rows that were scanned.
+    /// First row of numbers, counted in the scanned rows.
     pub(crate) first: usize,
     /// Name and unit of each column that has numbers, with the index of the column.
     pub(crate) columns: Vec<Column>,
@@ -30,7 +30,7 @@ pub(crate) struct Column {
 }
 
 impl Layout {
-    /// Finds the numbers of a table from its upper rows, or nothing where there are none.
+    /// Finds the numbers of a table from its upper rows; `None` if there are none.
     pub(crate) fn find(head: &[Vec<Cell>]) -> Option<Layout> {
         let first = (0..head.len()).find(|&row| {
             let rows = &head[row..(row + 2).min(head.len())];
@@ -50,7 +50,7 @@ impl Layout {
     }
 }
 
-/// The rows that name the columns.
+/// The rows with the names of the columns.
 struct Headings<'a> {
     names: Option<&'a [Cell]>,
     units: Option<&'a [Cell]>,
@@ -112,7 +112,7 @@ fn filled_width(row: &[Cell]) -> usize {
         .map_or(0, |last| last + 1)
 }
 
-/// Units stand in brackets, or most of them are known; no cell is longer than a unit is.
+/// True for a row of units: in brackets, or mostly known ones; no cell is longer than a unit.
 fn are_units(row: &[Cell]) -> bool {
     let texts: Vec<&str> = row
         .iter()
@@ -130,13 +130,13 @@ fn are_units(row: &[Cell]) -> bool {
 /// The columns of a table with their numbers.
 pub(crate) struct Filled {
     pub(crate) columns: Vec<Column>,
-    /// As long as `columns`, each of the same length.
+    /// One vector for each of `columns`, all of one length.
     pub(crate) numbers: Vec<Vec<f64>>,
 }
 
 impl Filled {
-    /// Adds the columns to a recording. A column of times gives the others their time base; `place` says where a column, or a
-    /// row of it, stands.
+    /// Adds the columns to a recording. A column of times is the time base of the others; `place` gives the position of
+    /// a column, or of a row in it.
     pub(crate) fn add_to(
         mut self,
         recording: &mut Recording,

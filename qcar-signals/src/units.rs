@@ -1,19 +1,20 @@
-//! Texts that are units. Only times are converted here, into seconds.
+//! Recognises units in texts. Only times are converted, to seconds.
 
-/// Symbols that stand alone.
+/// Symbols without a prefix.
 const ALONE: [&str; 36] = [
     "%", "°", "°C", "°F", "deg", "degC", "grad", "rpm", "1/min", "U/min", "min", "h", "d", "g0", "in", "inch", "ft",
     "mi", "mph", "lb", "lbf", "lbm", "psi", "kp", "kgf", "dB", "count", "counts", "raw", "bit", "rad", "strain",
     "µstrain", "ue", "kph", "sec",
 ];
-/// Symbols that may have a prefix.
+/// Symbols with an optional prefix.
 const PREFIXED: [&str; 22] = [
     "m", "g", "s", "N", "V", "A", "Pa", "bar", "Hz", "W", "J", "K", "C", "F", "Ω", "Ohm", "l", "eps", "t", "T", "H",
     "Volts",
 ];
 const PREFIXES: [&str; 11] = ["", "n", "u", "µ", "μ", "m", "c", "d", "k", "M", "G"];
 
-/// Whether a text is a unit: a product of known symbols with prefixes and powers, such as `m/s^2`, `N/mm` or `kN·s/m`.
+/// True if a text is a unit: a product of known symbols with prefixes and exponents, such as `m/s^2`, `N/mm` or
+/// `kN·s/m`.
 pub(crate) fn is_unit(text: &str) -> bool {
     let text = bare(text);
     let known = |word: &str| {
@@ -33,7 +34,7 @@ pub(crate) fn is_unit(text: &str) -> bool {
     }
 }
 
-/// A unit without the brackets around it.
+/// A unit without brackets.
 pub(crate) fn bare(text: &str) -> &str {
     let text = text.trim();
     let inner = [('[', ']'), ('(', ')'), ('<', '>')]
@@ -42,8 +43,8 @@ pub(crate) fn bare(text: &str) -> &str {
     inner.unwrap_or(text).trim()
 }
 
-/// A heading such as `Travel [mm]`, `Travel (mm)` or `Travel / mm` as name and unit. Square brackets always hold a unit,
-/// the others where what they hold is one.
+/// A heading such as `Travel [mm]`, `Travel (mm)` or `Travel / mm` as name and unit. Square brackets always contain a
+/// unit, the other forms only if their content is one.
 pub(crate) fn name_and_unit(heading: &str) -> (String, String) {
     let heading = heading.trim();
     let bracketed = |open: char, close: char| {
@@ -59,7 +60,7 @@ pub(crate) fn name_and_unit(heading: &str) -> (String, String) {
     split.unwrap_or_else(|| (heading.into(), String::new()))
 }
 
-/// Whether a channel of this name holds the times of the others.
+/// True if a channel of this name contains the times of the others.
 pub(crate) fn is_time(name: &str) -> bool {
     let name = name.trim().to_lowercase();
     matches!(
@@ -68,7 +69,7 @@ pub(crate) fn is_time(name: &str) -> bool {
     )
 }
 
-/// Seconds in a unit of time; none given means seconds.
+/// Seconds in a unit of time; without a unit, seconds.
 pub(crate) fn seconds(unit: &str) -> Option<f64> {
     match unit.trim() {
         "" | "s" | "S" | "sec" | "Sec" | "second" | "seconds" | "Sekunden" => Some(1.0),
@@ -81,8 +82,7 @@ pub(crate) fn seconds(unit: &str) -> Option<f64> {
     }
 }
 
-/// Times in seconds from times in a unit. Divides where a second is a whole number of units, so that 5 ms are 0.005 s to
-/// the last digit.
+/// Converts times to seconds. Divides if a second is a whole number of units, so that 5 ms are exactly 0.005 s.
 pub(crate) fn in_seconds(times: &mut [f64], seconds: f64) {
     let per_second = (1.0 / seconds).round();
     for time in times {

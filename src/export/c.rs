@@ -1,4 +1,4 @@
-//! C99: a source, and a header beside it.
+//! C99: a source file and a header.
 
 use qcar_dsl::c::{Sources, sources};
 

@@ -1,6 +1,6 @@
 //! A Functional Mock-up Unit: the model's C99, the functions of the interface around it, and the description of both.
 //!
-//! The same model and values give the same bytes, but for the library, which is the compiler's.
+//! Equal models and values give equal bytes, except for the library of the C compiler.
 
 // Text and attributes of XML.
 mod xml;
@@ -27,10 +27,10 @@ use variables::{Variable, Variables};
 pub use library::Library;
 pub use tyre::OnTyre;
 
-/// The relative tolerance to which Co-Simulation integrates.
+/// Relative tolerance of Co-Simulation.
 const TOLERANCE: f64 = 1e-9;
 
-/// What is the same in every unit, but for what stands before it all.
+/// Sources that are the same in every unit.
 const SOURCES: [(&str, &str); 5] = [
     ("motion.h", include_str!("fmu/motion.h")),
     ("core.h", include_str!("fmu/core.h")),
@@ -58,18 +58,18 @@ impl Version {
     }
 }
 
-/// A unit, and whether it has a library for this machine.
+/// A unit, and the result of compiling its library.
 pub struct Unit {
     /// The bytes of the `.fmu` file.
     pub archive: Vec<u8>,
-    /// What became of the library.
+    /// Result of compiling the library.
     pub library: Library,
 }
 
-/// Packs a model: on an effective road, or on a tyre that rolls over a profile.
+/// Packs a model: on an effective road, or with a tyre that rolls over a profile.
 ///
 /// # Errors
-/// Where a C compiler is there and cannot compile the model, its message.
+/// Fails with the message of the C compiler if it cannot compile the model.
 pub fn pack(subject: Subject, version: Version, tyre: Option<&OnTyre>) -> Result<Unit, String> {
     let name = &subject.compiled.about.name;
     let variables = Variables::of(subject, tyre);
@@ -108,7 +108,7 @@ pub fn pack(subject: Subject, version: Version, tyre: Option<&OnTyre>) -> Result
     })
 }
 
-/// What `core.h` reads of the model.
+/// Definitions of the model for `core.h`.
 const MODEL_HEADER: &str = "fmu_model.h";
 
 fn sources(subject: Subject, variables: &Variables, version: Version, tyre: Option<&OnTyre>) -> Vec<File> {
@@ -135,7 +135,7 @@ fn names(files: &[File]) -> impl Iterator<Item = &str> {
     files.iter().map(|file| file.name.as_str())
 }
 
-/// Sizes and names without the name of the model in them; the token and the end come when the rest is known.
+/// Sizes and names without the name of the model; token and end are added when they are known.
 fn model_header(subject: Subject, variables: &Variables, tyre: Option<&OnTyre>) -> String {
     let about = &subject.compiled.about;
     let upper = about.name.to_uppercase();
@@ -168,7 +168,7 @@ fn model_header(subject: Subject, variables: &Variables, tyre: Option<&OnTyre>) 
     )
 }
 
-/// A name for what the sources say: two hashes of 64 bits, as 8-4-4-4-12 digits.
+/// A hash of the sources as an identifier: two hashes of 64 bits, as 8-4-4-4-12 digits.
 fn token(sources: &[File]) -> String {
     let bytes = || {
         sources
@@ -187,7 +187,7 @@ fn fnv1a(bytes: impl Iterator<Item = u8>) -> u64 {
     })
 }
 
-/// A zip file whose entries bear no date.
+/// A zip file without dates of its entries.
 fn archive(entries: &[(String, Vec<u8>)]) -> Vec<u8> {
     let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
     let options = SimpleFileOptions::default()

@@ -10,18 +10,18 @@ use serde_json::{Value, json};
 use super::{File, Subject};
 use crate::json::inert;
 
-/// What computes with the functions of any model.
+/// Functions that work with any model.
 const MODEL: &str = include_str!("javascript/model.js");
 
-/// A ratio that the object gives.
+/// A ratio of the object.
 pub struct Ratio<'a> {
-    /// Its name and its signals.
+    /// Its name and signals.
     pub channel: &'a Channel,
-    /// What drives it.
+    /// Its excitation.
     pub excitation: usize,
 }
 
-/// The ratios that a linear model declares; none of a nonlinear one, whose response depends on the size of its input.
+/// The declared ratios of a linear model; empty for a nonlinear one, whose response depends on amplitude.
 pub fn declared(about: &About) -> Vec<Ratio<'_>> {
     let channels = about.channels.iter().filter(|_| about.linear);
     channels
@@ -49,7 +49,7 @@ pub fn file(subject: Subject, about: &About, values: &Values, stem: &str) -> Fil
     }
 }
 
-/// What a page needs to compute ratios of a model with other values: an expression that gives the object.
+/// An expression for a page that gives the object, to compute ratios for other parameter values.
 pub fn responses(subject: Subject, about: &About, values: &Values, ratios: &[Ratio]) -> String {
     let used = |own: &Printed| ratios.iter().any(|ratio| own.name == responding(subject, ratio));
     let all = functions(subject.compiled).into_iter();
@@ -57,7 +57,7 @@ pub fn responses(subject: Subject, about: &About, values: &Values, ratios: &[Rat
     object(subject, &needed, about, values, ratios)
 }
 
-/// The function of the response that a ratio is taken of.
+/// The response function of a ratio.
 fn responding(subject: Subject, ratio: &Ratio) -> String {
     response_name(&subject.compiled.about, ratio.excitation, "")
 }
@@ -85,7 +85,7 @@ fn object(subject: Subject, printed: &[Printed], about: &About, values: &Values,
     .concat()
 }
 
-/// A channel as an entry of a list; nothing where the model does not answer it.
+/// A channel as an entry of a list; `None` if the model lacks it.
 fn channel(about: &About, ratio: &Ratio, response: &str) -> Option<String> {
     let layout = &about.responses[ratio.excitation];
     let find = |signal| locate(about, layout, ratio.excitation, signal).ok();
@@ -126,7 +126,7 @@ fn described(about: &About, values: &Values) -> Value {
     })
 }
 
-/// The name of a model as that of a variable.
+/// The name of a model as the name of a variable.
 fn variable(name: &str) -> String {
     if RESERVED.contains(&name) {
         format!("{name}_")

@@ -1,4 +1,4 @@
-//! MATLAB: a function that computes the matrices, and a file that holds them.
+//! MATLAB: a function that computes the matrices, and a file with the matrices.
 
 use qcar_dsl::matlab::{function, is_name};
 use qcar_runtime::error::InputError;
@@ -8,10 +8,10 @@ use super::{File, Subject};
 use crate::failure::flag;
 use crate::state_space::StateSpace;
 
-/// `stem.m`, which MATLAB calls by that name.
+/// `stem.m`, with the name of its function.
 ///
 /// # Errors
-/// A name that MATLAB cannot call.
+/// Fails if MATLAB cannot call the name.
 pub fn program(subject: Subject, stem: &str) -> Result<File, InputError> {
     if !is_name(stem) {
         let expected = "letters, digits and `_`, a letter first, no keyword, at most 63";
@@ -24,18 +24,18 @@ pub fn program(subject: Subject, stem: &str) -> Result<File, InputError> {
     })
 }
 
-/// What `variables` gives as a MAT-file of version 5.
+/// A MAT-file of version 5 with `variables`.
 ///
 /// # Errors
-/// Parameters whose names would be the same in MATLAB.
+/// Fails if two parameters have the same name in MATLAB.
 pub fn data(subject: Subject, of: &StateSpace) -> Result<Vec<u8>, String> {
     v5(&format!("{} by qcar", of.model), &variables(subject, of))
 }
 
-/// The same of version 7.3.
+/// The same in version 7.3.
 ///
 /// # Errors
-/// As [`data`], and what the writer of HDF5 says.
+/// Fails as [`data`] does, and with the error of the HDF5 writer.
 pub fn data_in_hdf5(subject: Subject, of: &StateSpace) -> Result<Vec<u8>, String> {
     v73(&variables(subject, of))
 }
@@ -58,7 +58,7 @@ fn variables(subject: Subject, of: &StateSpace) -> [(String, Array); 7] {
     ]
 }
 
-/// As the function of [`program`] gives them.
+/// Names as in the function of [`program`].
 fn names(subject: Subject, of: &StateSpace) -> Array {
     let parameters = &subject.compiled.about.parameters;
     let lists: [(&str, Vec<&str>); 8] = [

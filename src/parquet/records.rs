@@ -32,8 +32,8 @@ pub(super) fn of_file(shape: &Shape, rows: u64) -> Vec<u8> {
     let column = |name: &String| Struct(vec![(1, Int(DOUBLE)), (3, Int(REQUIRED)), (4, text(name))]);
     let schema = std::iter::once(root).chain(shape.columns.iter().map(column));
     let groups = (0..rows.div_ceil(GROUP)).map(|group| row_group(shape, group, GROUP.min(rows - group * GROUP)));
-    let (key, said) = &shape.about;
-    let about = Struct(vec![(1, text(key)), (2, text(said))]);
+    let (key, value) = &shape.about;
+    let about = Struct(vec![(1, text(key)), (2, text(value))]);
     bytes(&Struct(vec![
         (1, Int(1)),
         (2, List(schema.collect())),

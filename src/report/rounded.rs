@@ -1,9 +1,9 @@
-//! Numbers with no more digits than a curve can show.
+//! Numbers with the digits that a curve can show.
 
 /// Significant digits of a curve.
 const DIGITS: usize = 5;
 
-/// The nearest number with so few digits.
+/// The nearest number with this number of digits.
 pub fn rounded(value: f64) -> f64 {
     format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value)
 }

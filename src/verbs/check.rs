@@ -1,5 +1,4 @@
-//! `qcar check`: every rule of the compiler, on shipped models or on files, and what campaigns show to be wrong with
-//! themselves.
+//! `qcar check`: the rules of the compiler for models, and the flaws of the data of campaigns.
 
 use std::path::Path;
 
@@ -33,7 +32,7 @@ pub struct Arguments {
     members: bool,
 }
 
-/// Does it.
+/// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let named: Vec<&str> = match arguments.models.as_slice() {
         [] => catalogue::names().collect(),
@@ -52,7 +51,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     }
 }
 
-/// Whether all is well with a model or a campaign, and what to say of it.
+/// True if a model or a campaign has no fault, and the text to print.
 fn verdict(name: &str) -> Result<(bool, String), Failure> {
     if Path::new(name).is_dir() {
         return campaign::verdict(Path::new(name));
@@ -66,7 +65,7 @@ fn verdict(name: &str) -> Result<(bool, String), Failure> {
     })
 }
 
-/// All members of all families, those that are refused with their options.
+/// All members of all families; members that are refused with their options.
 fn members(files: &[&str]) -> Result<String, Failure> {
     let mut text = String::new();
     let mut all_well = true;

@@ -79,7 +79,7 @@ pub struct Arguments {
     format: Format,
 }
 
-/// Does it.
+/// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let subject = Subject::of(&arguments.first, &arguments.second)?;
     let comparison = gather::gather(&subject, arguments)?;

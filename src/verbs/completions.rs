@@ -1,11 +1,11 @@
-//! `qcar completions`: a script with which a shell asks qcar for completions.
+//! `qcar completions`: a shell script for completions.
 
 use clap::{Args, Command, ValueEnum};
 use clap_complete::env::{Bash, EnvCompleter, Fish, Powershell, Zsh};
 
 use crate::failure::Failure;
 
-/// The variable by which a shell asks.
+/// The environment variable by which the shell requests completions.
 pub const VARIABLE: &str = "QCAR_COMPLETE";
 
 /// Print a script with which a shell completes verbs, flags and their values, and names of models and effects
@@ -29,7 +29,7 @@ enum Shell {
     Zsh,
 }
 
-/// Does it for the program of `cli`, which the shell must find by its name.
+/// Prints the script for the program of `cli`, which the shell must find by its name.
 pub fn run(arguments: &Arguments, cli: &Command) -> Result<String, Failure> {
     let shell: &dyn EnvCompleter = match arguments.shell {
         Shell::Bash => &Bash,

@@ -29,7 +29,7 @@ pub struct Arguments {
     format: Format,
 }
 
-/// One line before and after.
+/// One line before and after the change.
 #[derive(Serialize)]
 pub(crate) struct Change<'a> {
     name: &'a str,
@@ -47,7 +47,7 @@ impl Change<'_> {
     }
 }
 
-/// Does it.
+/// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let (first, second) = (
         catalogue::compiled(&arguments.first)?,
@@ -64,7 +64,7 @@ fn in_json(difference: &Difference) -> String {
     json::line(&parts(difference))
 }
 
-/// What differs, keyed by heading.
+/// The differences, by heading.
 pub(crate) fn parts(difference: &Difference) -> Ordered<Vec<Change<'_>>> {
     let parts = difference.parts.iter().map(|part| {
         let changes: Vec<Change> = part.changes.iter().map(Change::of).collect();

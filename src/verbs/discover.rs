@@ -10,7 +10,7 @@ use clap_complete::engine::ArgValueCompleter;
 use qcar_dsl::check::Checked;
 use qcar_dsl::patch::Patched;
 use qcar_runtime::campaign::Campaign;
-use qcar_runtime::discover::answer::{Discovery, Finding, News, Verdict};
+use qcar_runtime::discover::answer::{Discovery, Finding, Update, Verdict};
 use qcar_runtime::discover::candidate::Workshop;
 use qcar_runtime::discover::numbers::Numbers;
 use qcar_runtime::discover::posterior::Setting;
@@ -61,7 +61,7 @@ pub struct Arguments {
     /// Write the patched model file, parameters.toml, discovery.json and gap.svg into this folder; stopped by Ctrl-C, what is known by then into `unfinished` in it
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
-    /// Multiply numbers that the search assumes, to see what the answer owes to them
+    /// Multiply assumptions of the search, to see their influence on the answer
     #[arg(long, hide = true, value_name = "NAME=FACTOR,…", value_parser = multiplied)]
     assume: Option<Numbers>,
     /// Output format
@@ -69,25 +69,25 @@ pub struct Arguments {
     format: Format,
 }
 
-/// A campaign, and what was found in it.
+/// Result of a search in a campaign.
 pub struct Answer {
-    /// Its name.
+    /// Name of the campaign.
     pub campaign: String,
-    /// What it says.
+    /// Its measured data.
     pub evidence: Evidence,
-    /// What was found.
+    /// Result of the search.
     pub discovery: Discovery,
-    /// The model that was examined.
+    /// The base model, with its nuisance effects.
     base: Checked,
-    /// Where something would explain what it leaves of the sweeps.
+    /// Places at which a change would explain the residuals of the sweeps.
     pub sweeps: Sweeps,
-    /// Of each finding, the units of its parameters.
+    /// Units of the parameters of each finding.
     pub units: Vec<BTreeMap<String, String>>,
-    /// The model with it; `None` where nothing of the model is missing.
+    /// The model with the findings; `None` if none of them changes the model.
     pub(crate) model: Option<Written>,
-    /// The laws that were learned where no effect explains the gap, and the model with them.
+    /// The learned laws and the model with them; `None` without any.
     pub(crate) learned: Option<law::LearnedModel>,
-    /// Time for all of it.
+    /// Duration of the search, s.
     pub seconds: f64,
 }
 
@@ -102,35 +102,35 @@ impl Answer {
         render::text(self)
     }
 
-    /// What is left of each sensor over frequency, before and after, as SVG.
+    /// Residuals of each sensor over frequency, before and after, as SVG.
     pub fn figure(&self) -> String {
         let title = format!("{}: residuals of the model; 0 dB is noise", self.campaign);
-        figure::gap(title, [&self.discovery.before.gap, &self.discovery.after.gap]).svg()
+        figure::residuals(title, [&self.discovery.before.misfit, &self.discovery.after.misfit]).svg()
     }
 
-    /// The text of the model with the effects in it; `None` where nothing of the model is missing.
+    /// The text of the model with the findings; `None` if none of them changes the model.
     pub fn model_text(&self) -> Option<&str> {
         self.model.as_ref().map(|model| &*model.text)
     }
 
-    /// The values of all parameters with all that was found.
+    /// All parameter values of the model with the findings.
     pub fn values(&self) -> &[(String, f64)] {
         &self.discovery.after.named
     }
 }
 
-/// The model with the effects in it.
+/// A model with effects.
 pub(crate) struct Written {
     /// Its name.
     pub name: String,
-    /// The model file.
+    /// Text of the model file.
     pub text: String,
-    /// Where that was written.
+    /// Path of the model file; `None` before it is written.
     pub file: Option<PathBuf>,
 }
 
 impl Written {
-    /// Writes the model file, and notes where.
+    /// Writes the model file and stores its path.
     fn write(&mut self, folder: &Path) -> Result<(), Failure> {
         let name = format!("{}.axle", self.name);
         put(folder, &name, &self.text)?;
@@ -139,7 +139,7 @@ impl Written {
     }
 }
 
-/// The numbers of the search with some of them multiplied.
+/// Parses factors on the assumptions of the search.
 fn multiplied(text: &str) -> Result<Numbers, String> {
     let expected = || format!("NAME=FACTOR is expected, NAME one of {}", Numbers::NAMES.join(", "));
     text.split(',').try_fold(Numbers::default(), |numbers, part| {
@@ -149,7 +149,7 @@ fn multiplied(text: &str) -> Result<Numbers, String> {
     })
 }
 
-/// Does it.
+/// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let numbers = arguments.assume.clone().unwrap_or_default();
     let (model, out) = (arguments.model.as_deref(), arguments.out.as_deref());
@@ -163,10 +163,10 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     })
 }
 
-/// Searches for what the model of the campaign in a folder lacks, and notes oddities of the campaign.
+/// Searches for the effects that the model of the campaign in a folder lacks. The result has the notices of the campaign.
 ///
 /// # Errors
-/// A campaign that cannot be read or says nothing of the model, or a model that the compiler refuses.
+/// Fails if the campaign cannot be read or has no data for the model, or if the model does not compile.
 pub fn discover(folder: &Path, model: Option<&str>, out: Option<&Path>, numbers: Numbers) -> Result<Answer, Failure> {
     let campaign = Campaign::open(folder)?;
     let mut answer = answer(&campaign, model, out, numbers)?;
@@ -174,50 +174,51 @@ pub fn discover(folder: &Path, model: Option<&str>, out: Option<&Path>, numbers:
     Ok(answer)
 }
 
-/// Searches for what the model of a campaign lacks. If it is stopped, it writes what is known by then to `out`.
+/// Searches for the effects that the model of a campaign lacks. If it is stopped, it writes its intermediate results to
+/// `out`.
 ///
 /// # Errors
-/// A campaign that says nothing of the model, or a model that the compiler refuses.
+/// Fails if the campaign has no data for the model, or if the model does not compile.
 pub(crate) fn answer(
     campaign: &Campaign,
     model: Option<&str>,
     out: Option<&Path>,
     numbers: Numbers,
 ) -> Result<Answer, Failure> {
-    let begun = Instant::now();
+    let start = Instant::now();
     let bench = Bench::of_campaign(campaign, model)?;
     check_campaign(bench.model().about(), campaign)?;
     if kc::has_curves(campaign) {
-        // A curve in a wrong unit would be evidence of an effect that is not there.
+        // A curve in a wrong unit would look like a missing effect, so the curves are checked first.
         kc::gradients(campaign)?;
     }
     let setting = setting(campaign, bench.model().about())?;
     let showing = Showing::new();
-    showing.tell(format!("{}: reading", campaign.name));
+    showing.step(format!("{}: reading", campaign.name));
     let mut evidence = Evidence::from_campaign(campaign, bench.model().about())?;
     evidence.numbers = numbers;
     let bench = bench.measured(&evidence);
-    let begun_with = OnceLock::new();
-    let told = |news: News<'_>| match news {
-        News::Doing(what) => showing.tell(format!("{}: {what}", campaign.name)),
-        News::Far(done, of) => showing.far(done, of),
-        News::Known(what, findings, explanation) => {
+    let base_explanation = OnceLock::new();
+    let on_update = |update: Update<'_>| match update {
+        Update::Step(what) => showing.step(format!("{}: {what}", campaign.name)),
+        Update::Done(done, of) => showing.count(done, of),
+        Update::Interim(what, findings, explanation) => {
             note(what);
-            let before = begun_with.get_or_init(|| explanation.clone());
+            let before = base_explanation.get_or_init(|| explanation.clone());
             if let Some(folder) = out {
                 let files = unfinished::files(&campaign.name, &bench, findings, [before, explanation]);
                 leave(&unfinished::folder(folder), files);
             }
         }
     };
-    let discovery = select::discover(Box::new(bench.clone()), &setting, &evidence, &told);
+    let discovery = select::discover(Box::new(bench.clone()), &setting, &evidence, &on_update);
     drop(showing);
     out.inspect(|folder| leave(folder, Vec::new()));
     let discovery =
         discovery.map_err(|error| Failure::Input(format!("{}: {error}\n", campaign.manifest().display())))?;
     evidence.notices.extend(offsets_of_the_model(&discovery));
-    // A model that cannot be compared with the sweeps has no places.
-    let [before, after] = [0, 1].map(|of| with(bench.clone(), &discovery.nuisances[of]));
+    // Without sweeps that the model can be compared with, there are no places.
+    let [before, after] = [0, 1].map(|of| with_nuisances(bench.clone(), &discovery.nuisances[of]));
     let sweeps = Sweeps::new(before.model(), &discovery.before.refit, &evidence).unwrap_or_default();
     Ok(Answer {
         base: before.checked().clone(),
@@ -228,11 +229,12 @@ pub(crate) fn answer(
         campaign: campaign.name.clone(),
         evidence,
         discovery,
-        seconds: begun.elapsed().as_secs_f64(),
+        seconds: start.elapsed().as_secs_f64(),
     })
 }
 
-/// A sentence for each sensor of a record that is given no offset, since the model has it.
+/// A sentence for each sensor of a record without an offset of its own, because a parameter or state of the model acts as
+/// one.
 fn offsets_of_the_model(discovery: &Discovery) -> impl Iterator<Item = String> {
     let without = &discovery.after.refit.nuisance.without_offset;
     without.iter().map(|(sensor, own)| {
@@ -240,10 +242,11 @@ fn offsets_of_the_model(discovery: &Discovery) -> impl Iterator<Item = String> {
     })
 }
 
-/// What the campaign gives, and what the model has beside that and may be estimated: an effect that is in it already.
+/// Parameters of the campaign, and further parameters of the model that may be estimated, such as those of an effect that
+/// it already has.
 ///
 /// # Errors
-/// As [`bound`].
+/// Fails as [`bound`] does.
 fn setting(campaign: &Campaign, about: &About) -> Result<Setting, InputError> {
     let mut parameters = campaign.parameters.clone();
     parameters.extend(own(about, campaign));
@@ -251,23 +254,24 @@ fn setting(campaign: &Campaign, about: &About) -> Result<Setting, InputError> {
     Ok(given(&parameters, campaign))
 }
 
-/// The bench with nuisances in its model. Their fit has shown that they apply.
-fn with(bench: Bench, nuisances: &[Finding]) -> Bench {
+/// The bench with nuisance effects added to its model. They apply, since they have been fitted.
+fn with_nuisances(bench: Bench, nuisances: &[Finding]) -> Bench {
     nuisances.iter().fold(bench, |bench, own| {
         let patched = extended(&bench, own).expect("what was fitted applies");
         bench.holding(patched.model)
     })
 }
 
-/// The model of the bench with a finding in it; `None` where that does not apply.
+/// The model of the bench with a finding added; `None` if the finding does not apply.
 fn extended(bench: &Bench, finding: &Finding) -> Option<Patched> {
     bench.patched(&finding.effect, &finding.at, finding.form.as_deref())
 }
 
-/// The units of the parameters of each finding. Those of a class stand in each other's place, others build on each other.
+/// The units of the parameters of each finding. Certain findings are added one after another; alternatives of a class are
+/// each added to the model with the certain ones.
 fn units(mut bench: Bench, discovery: &Discovery) -> Vec<BTreeMap<String, String>> {
     let mut units = Vec::new();
-    let found = discovery.told_apart().0.len();
+    let found = discovery.certain_and_alternatives().0.len();
     for (place, finding) in discovery.findings.iter().enumerate() {
         let patched = extended(&bench, finding);
         let own = patched.iter().flat_map(|patched| &patched.parameters);
@@ -279,9 +283,9 @@ fn units(mut bench: Bench, discovery: &Discovery) -> Vec<BTreeMap<String, String
     units
 }
 
-/// The model file with all that was found.
+/// The model with the findings; `None` unless the verdict is `Found`.
 fn found(bench: Bench, discovery: &Discovery) -> Option<Written> {
-    let (before, after) = (&discovery.before.gap, &discovery.after.gap);
+    let (before, after) = (&discovery.before.misfit, &discovery.after.misfit);
     let evidence = format!(
         "Evidence: the RMS residual of held-out runs fell from {:.2} to {:.2} standard deviations.",
         before.held_out, after.held_out
@@ -292,7 +296,7 @@ fn found(bench: Bench, discovery: &Discovery) -> Option<Written> {
     }
 }
 
-/// The model file with effects in it, and a sentence on why; `None` where no effect is in the model.
+/// The model with effects and a sentence on their evidence; `None` if none of them changes the model.
 fn patched(mut bench: Bench, findings: &[Finding], why: &str) -> Option<Written> {
     let mut written = None;
     for finding in findings {
@@ -308,11 +312,10 @@ fn patched(mut bench: Bench, findings: &[Finding], why: &str) -> Option<Written>
     written
 }
 
-/// Writes the model file, parameters and figures, and notes where the model is. What a search had left there that was
-/// stopped gives way.
+/// Writes the model file, the parameters and the figure, and removes intermediate results of a stopped search.
 ///
 /// # Errors
-/// A folder that cannot be written to.
+/// Fails if the folder cannot be written to.
 pub(crate) fn write(answer: &mut Answer, folder: &Path) -> Result<(), Failure> {
     if let Some(model) = &mut answer.model {
         model.write(folder)?;
@@ -321,7 +324,7 @@ pub(crate) fn write(answer: &mut Answer, folder: &Path) -> Result<(), Failure> {
         learned.write(folder)?;
     }
     let (campaign, discovery) = (&answer.campaign, &answer.discovery);
-    let best = discovery.told_apart().1.first();
+    let best = discovery.certain_and_alternatives().1.first();
     let best = best.map_or_else(String::new, |own| format!(", {} at {} for one", own.effect, own.at));
     let heading = format!("{campaign}: what explains its runs best{best}");
     put(
@@ -331,6 +334,6 @@ pub(crate) fn write(answer: &mut Answer, folder: &Path) -> Result<(), Failure> {
     )?;
     put(folder, "gap.svg", &answer.figure())?;
     put(folder, "discovery.json", &render::json(answer))?;
-    unfinished::take_away(folder);
+    unfinished::remove(folder);
     Ok(())
 }

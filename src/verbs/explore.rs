@@ -118,7 +118,7 @@ enum Metric {
     Modes,
 }
 
-/// Does it.
+/// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let model = catalogue::load(&arguments.model.model)?;
     let drawn = arguments.posterior.as_deref().map(parameters::posterior).transpose()?;
@@ -151,7 +151,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
 }
 
 /// # Errors
-/// A posterior of another model.
+/// Fails if the posterior is that of another model.
 fn check_same_model(arguments: &Arguments, about: &About, fitted: Option<&str>) -> Result<(), InputError> {
     match (fitted, &arguments.posterior) {
         (Some(fitted), Some(file)) if *fitted != *about.name => {
@@ -189,7 +189,8 @@ impl Chosen {
 }
 
 /// # Errors
-/// Ends that are no range, a design that its parameters do not go with, and more sets than it has.
+/// Fails if the bounds are no range, if the design does not suit its parameters, or if more sets are requested than it
+/// has.
 fn design(
     arguments: &Arguments,
     about: &About,
@@ -226,9 +227,9 @@ fn design(
 }
 
 /// # Errors
-/// More sets than are told apart, and more parameters than Sobol's sequence has dimensions.
+/// Fails if there are more sets than numbers can distinguish, or more parameters than Sobol's sequence has dimensions.
 fn check_size(scheme: &Scheme, axes: usize) -> Result<(), InputError> {
-    // Whole numbers up to here are exact in a column of numbers.
+    // Larger whole numbers are not exact in a column of floating-point numbers.
     const MOST: u64 = 1 << 53;
     let count = match scheme {
         Scheme::Grid(values) => (*values as f64).powi(axes as i32),
@@ -255,7 +256,7 @@ fn check_size(scheme: &Scheme, axes: usize) -> Result<(), InputError> {
     Ok(())
 }
 
-/// The parameters that a fit has estimated.
+/// The estimated parameters of a fit.
 fn axes_of(about: &About, posterior: &Posterior) -> Vec<Axis> {
     let place = |name: &str| about.parameters.iter().position(|parameter| parameter.name == *name);
     let axis = |own: &ensemble::Estimate| Axis {
@@ -265,10 +266,10 @@ fn axes_of(about: &About, posterior: &Posterior) -> Vec<Axis> {
     posterior.estimates().iter().map(axis).collect()
 }
 
-/// What is driven over; `None` without rides.
+/// Tyre, load and roads of the rides; `None` without rides.
 ///
 /// # Errors
-/// A vehicle without a tyre, and a parameter that varies though the tyre stands on it.
+/// Fails if the vehicle has no tyre, or if a parameter varies on which the tyre depends.
 fn track(arguments: &Arguments) -> Result<Option<Track>, Failure> {
     if arguments.rides.is_empty() {
         return Ok(None);
@@ -301,7 +302,7 @@ fn track(arguments: &Arguments) -> Result<Option<Track>, Failure> {
 }
 
 /// # Errors
-/// Metrics that need rides where there are none, channels that are not known, and a model that has no such numbers.
+/// Fails if a metric needs rides and there are none, if a channel is unknown, or if the model lacks a metric.
 fn metrics<'a>(arguments: &Arguments, model: &'a Loaded) -> Result<Metrics<'a, dyn Model + 'a>, Failure> {
     let chosen: Vec<ensemble::Metric> = match (&arguments.metrics[..], arguments.rides.is_empty()) {
         ([], true) => vec![ensemble::Metric::Transmissibility, ensemble::Metric::Modes],

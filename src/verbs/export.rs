@@ -47,7 +47,7 @@ pub struct Arguments {
     out: PathBuf,
 }
 
-/// What is written.
+/// Kinds of output.
 #[derive(Clone, Copy, ValueEnum)]
 enum Kind {
     /// FILE.c and a header: equations, matrices, Jacobians, responses
@@ -109,7 +109,7 @@ impl Kind {
     }
 }
 
-/// Does it.
+/// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let stem = stem(&arguments.out, arguments.kind.extension())?;
     let version = version(arguments)?;
@@ -142,13 +142,13 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     ))
 }
 
-/// What an FMU is beside its model.
+/// Settings of an FMU.
 struct UnitOf {
     version: fmu::Version,
     tyre: Option<fmu::OnTyre>,
 }
 
-/// The version of the interface, which only an FMU has, as only it has a road.
+/// The version of the interface. Only an FMU has a version and a road.
 fn version(arguments: &Arguments) -> Result<fmu::Version, Failure> {
     if arguments.road.is_some() && !matches!(arguments.kind, Kind::Fmu) {
         let remedy = "leave it out, or write --as fmu";
@@ -191,7 +191,7 @@ fn must_be_free(path: &Path) -> Result<(), Failure> {
     .into())
 }
 
-/// What is to be written, and what to say of it beside.
+/// The files to write, and a message on them.
 fn files(
     (kind, unit): (Kind, &UnitOf),
     subject: Subject,
@@ -244,7 +244,7 @@ fn matrices(model: &Loaded, values: &Values) -> Result<StateSpace, Failure> {
     Ok(matrices)
 }
 
-/// An entry of a matrix a line.
+/// One matrix entry per line.
 fn entries(of: &StateSpace) -> String {
     let states: Vec<&str> = of.states.iter().map(|own| &*own.name).collect();
     let inputs: Vec<&str> = of.inputs.iter().map(|own| &*own.variable).collect();
@@ -265,7 +265,7 @@ fn entries(of: &StateSpace) -> String {
     text
 }
 
-/// What a user should know of the library of a unit.
+/// Notes for the user on the library of a unit.
 fn library(of: &Library) -> String {
     match of {
         Library::Compiled { place, compiler, .. } => format!("{place}: compiled by {compiler}\n"),

@@ -17,7 +17,7 @@ use qcar_runtime::fit::profile::ParameterProfile;
 use qcar_runtime::fit::report::ParameterFit;
 use qcar_runtime::fit::{Fit, Level, Plan, Setup};
 use qcar_runtime::model::{About, Model};
-use qcar_runtime::progress::Told;
+use qcar_runtime::progress::OnProgress;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::spelling;
 use qcar_runtime::transmissibility::Options;
@@ -48,13 +48,14 @@ pub(crate) mod nonlinear;
 
 /// Fit a model to the sweeps and time histories of a campaign
 ///
-/// A linear model is fitted to transmissibilities, with all levels in one cost. A nonlinear model is fitted to all runs that it
-/// predicts, including cleats, K&C curves and dynamometer tables: to the first three harmonics of sweeps by harmonic balance, and to
-/// records sample by sample, each with its own uncertainty. `--all-runs` does the same for a linear model.
-/// Runs with the role `fit` are fitted; `held_out` runs are only compared with. Estimated are the parameters with `fit = true` in the
-/// campaign, and those that only the model gives, with a default and a range, unless they are `known`. A parameter that no fitted
-/// channel depends on takes its value from the K&C curve that determines it, if the campaign has one.
-/// The exit status is 1 if the search does not end at a minimum, or if every parameter ends at a bound of its range.
+/// A linear model is fitted to transmissibilities, with all levels in one cost. A nonlinear model is fitted to all runs
+/// that it predicts, including cleats, K&C curves and dynamometer tables: to the first three harmonics of sweeps by
+/// harmonic balance, and to records sample by sample, each with its own uncertainty. `--all-runs` does the same for a
+/// linear model. Runs with the role `fit` are fitted; `held_out` runs are only compared with. Estimated are the
+/// parameters with `fit = true` in the campaign, and those that only the model gives, with a default and a range,
+/// unless they are `known`. A parameter that no fitted channel depends on takes its value from the K&C curve that
+/// determines it, if the campaign has one. The exit status is 1 if the search does not end at a minimum, or if every
+/// parameter ends at a bound of its range.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar fit models/campaigns/axle_a_rig --out results\n  qcar fit models/campaigns/axle_a_rig --starts 4 --fix c_tire --channels pad_to_wheel,wheel_to_body\n  qcar fit models/campaigns/axle_a_rig --profile k_tire,c_tire\n  qcar fit models/campaigns/axle_a_rig --bootstrap 1000\n  qcar fit models/campaigns/silverbox --format json"
@@ -64,7 +65,8 @@ pub struct Arguments {
     campaign: PathBuf,
     #[command(flatten)]
     choices: Choices,
-    /// Write parameters.toml, fit.json and, for a linear model, transmissibility.csv, transmissibility.svg and results.xlsx into this folder
+    /// Write parameters.toml, fit.json and, for a linear model, transmissibility.csv, transmissibility.svg and
+    /// results.xlsx into this folder
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
     /// Output format
@@ -72,7 +74,7 @@ pub struct Arguments {
     format: Format,
 }
 
-/// What may differ from the campaign's own plan.
+/// Choices that differ from the plan of the campaign.
 #[derive(Args, Default)]
 pub struct Choices {
     /// Fit this model, by name or path, instead of the campaign's
@@ -102,7 +104,7 @@ pub struct Choices {
 }
 
 impl Choices {
-    /// The campaign's plan, for this model or for the campaign's.
+    /// The plan of the campaign, for this model or for that of the campaign.
     pub fn of_model(model: Option<&str>) -> Self {
         Choices {
             model: model.map(String::from),
@@ -111,7 +113,7 @@ impl Choices {
     }
 }
 
-/// Does it.
+/// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let campaign = Campaign::open(&arguments.campaign)?;
     let model = catalogue::of_campaign(&campaign, arguments.choices.model.as_deref())?;
@@ -137,43 +139,43 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     }
 }
 
-/// A campaign, the model that was fitted to it, and what came out.
+/// A campaign, the model that was fitted to it, and the result.
 pub struct Fitted {
-    /// What was measured.
+    /// The campaign.
     pub campaign: Campaign,
-    /// What was fitted.
+    /// The fitted model.
     pub model: Loaded,
     /// The measured ratios.
     pub levels: Vec<Level>,
     /// The result.
     pub fit: Fit,
-    /// Profiles of the parameters that were asked for.
+    /// Profiles of the requested parameters.
     pub profiles: Vec<ParameterProfile>,
-    /// What fits to resamples say, where that was asked for.
+    /// Results of fits to resamples; `None` if they were not requested.
     pub bootstrap: Option<Bootstrap>,
-    /// Time for reading, estimating and fitting.
+    /// Duration of reading, estimating and fitting, s.
     pub seconds: f64,
 }
 
 /// A measured ratio beside that of the fitted model, line by line.
 pub struct Ratio<'a> {
-    /// The file of the run.
+    /// File of the run.
     pub run: &'a str,
-    /// What it is used for.
+    /// Role of the run.
     pub role: Role,
-    /// What was measured.
+    /// Measured values.
     pub observation: &'a Observation,
-    /// The fitted model.
+    /// Values of the fitted model.
     pub fitted: Vec<Complex<f64>>,
 }
 
 impl Fitted {
-    /// The result as `docs/json.md` describes it.
+    /// The result as JSON, see `docs/json.md`.
     pub fn json(&self) -> String {
         render::json(self)
     }
 
-    /// The first run's ratios, measured and modelled, as SVG.
+    /// Measured and modelled ratios of the first run, as SVG.
     pub fn figure(&self) -> String {
         files::figure(self, &files::compare(self)).svg()
     }
@@ -195,15 +197,15 @@ impl Fitted {
         self.with(|parameter| parameter.start)
     }
 
-    /// The parameters that were found.
+    /// The fitted parameters.
     pub fn values(&self) -> Values {
         self.with(|parameter| parameter.value)
     }
 
-    /// The plan of a fit that begins where this one has ended.
+    /// The plan of a fit that starts at the result of this one.
     ///
     /// # Errors
-    /// What is wrong with the choices.
+    /// Fails if the choices are invalid.
     pub(crate) fn as_plan(&self, choices: &Choices) -> Result<Plan, InputError> {
         let mut plan = plan(&self.campaign, self.model.about(), choices)?;
         for own in &mut plan.parameters {
@@ -236,7 +238,8 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
     refuse_unseen(&model, &plan)?;
     let channels = each_once(choices.channels.iter().cloned());
     let wanted = (!channels.is_empty()).then_some(channels.as_slice());
-    let measure = |told: Told<'_>| levels(&campaign, model.about(), wanted, &Options::default(), told);
+    let measure =
+        |on_progress: OnProgress<'_>| levels(&campaign, model.about(), wanted, &Options::default(), on_progress);
     let levels = while_counting(format!("{}: transmissibilities of run", campaign.name), measure)?;
     let setup = Setup::new(&*model, &plan, &levels)?;
     model.check_inertias(setup.values())?;
@@ -245,11 +248,11 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
     campaign.notices.extend(out_of_range(model.about(), setup.values()));
     let profiled = profiled(&plan, model.about(), setup.free(), &choices.profile)?;
     let searches = format!("{}: fitting {}, search", campaign.name, model.about().name);
-    let fit = while_counting(searches, |told| setup.fit_telling(told));
+    let fit = while_counting(searches, |on_progress| setup.fit_with_progress(on_progress));
     let profiles = profiles(&setup, &fit, &profiled, &campaign.name);
     let resamples = choices.bootstrap.filter(|_| fit.converged);
     let bootstrap = resamples.map(|resamples| {
-        let repeat = |told: Told<'_>| setup.bootstrap(&fit, resamples as usize, told);
+        let repeat = |on_progress: OnProgress<'_>| setup.bootstrap(&fit, resamples as usize, on_progress);
         while_counting(format!("{}: bootstrap, fit", campaign.name), repeat)
     });
     let mut fitted = Fitted {
@@ -266,10 +269,10 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
     Ok(fitted)
 }
 
-/// The names that are profiled.
+/// Names of the parameters to profile.
 ///
 /// # Errors
-/// Every name of a parameter that is not fitted.
+/// Fails if a name is not that of a fitted parameter.
 fn profiled(plan: &Plan, about: &About, free: &[usize], names: &[String]) -> Result<Vec<String>, InputError> {
     let fitted = || free.iter().map(|&place| &*about.parameters[place].name);
     if names.iter().any(|name| name == "all") {
@@ -295,11 +298,13 @@ fn profiles(setup: &Setup<'_, dyn Model + '_>, fit: &Fit, names: &[String], camp
     if names.is_empty() || !fit.converged {
         return Vec::new();
     }
-    while_counting(format!("{campaign}: profile"), |told| setup.profiles(fit, names, told))
+    while_counting(format!("{campaign}: profile"), |on_progress| {
+        setup.profiles(fit, names, on_progress)
+    })
 }
 
 /// # Errors
-/// Parameters that are to be fitted together and of which no output of the model sees as many combinations.
+/// Fails if parameters are to be fitted together of which the outputs determine fewer combinations.
 fn refuse_unseen(model: &Loaded, plan: &Plan) -> Result<(), InputError> {
     let is_fitted = |name: &&String| plan.parameters.iter().any(|own| own.fit && own.name == **name);
     let problem = |unseen: &Unseen| {
@@ -327,7 +332,8 @@ fn refuse_unseen(model: &Loaded, plan: &Plan) -> Result<(), InputError> {
     InputError::unless_empty(model.unseen().iter().filter_map(problem).collect(), Some(()))
 }
 
-/// The campaign's plan, with what the model has beside it, the user's choices, and a range for all that is fitted.
+/// The plan of the campaign with further parameters of the model, the choices of the user, and a range for every fitted
+/// parameter.
 fn plan(campaign: &Campaign, about: &About, choices: &Choices) -> Result<Plan, InputError> {
     let mut plan = Plan::new(campaign);
     plan.parameters.extend(own(about, campaign));

@@ -74,7 +74,7 @@ impl FromStr for Frequencies {
 }
 
 impl Frequencies {
-    /// In Hz; the first and the last are exact.
+    /// The frequencies, Hz; the first and the last are exact.
     pub(crate) fn values(&self) -> Vec<f64> {
         let last = self.lines - 1;
         let ratio = self.to / self.from;
@@ -87,7 +87,7 @@ impl Frequencies {
     }
 }
 
-/// Does it.
+/// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let wanted = match arguments.format {
         TableFormat::Json => Wanted::Jacobian,
@@ -132,9 +132,9 @@ struct FrequencyResponse {
 /// The ratio of a channel's two signals, and its derivatives by every parameter.
 #[derive(Serialize)]
 struct ChannelResponse {
-    /// Of the ratio.
+    /// Unit of the ratio.
     unit: String,
-    /// Hz.
+    /// Frequencies, Hz.
     frequency: Vec<f64>,
     re: Vec<f64>,
     im: Vec<f64>,
@@ -142,10 +142,10 @@ struct ChannelResponse {
     d_im: Ordered<Vec<f64>>,
 }
 
-/// The channels of these names, all where there is none.
+/// The channels with these names, or all without names.
 ///
 /// # Errors
-/// A model without channels, and names that it does not have.
+/// Fails if the model has no channels, or lacks a name.
 pub(crate) fn chosen<'a>(about: &'a About, names: &[String]) -> Result<Vec<&'a Channel>, Failure> {
     let find = |name: &String| about.channels.iter().find(|channel| channel.name == **name);
     let known: Vec<_> = about
@@ -221,7 +221,7 @@ impl<'a> Excited<'a> {
         })
     }
 
-    /// By every parameter that leads its ties; nothing where derivatives are not wanted.
+    /// Derivatives by every parameter that is not tied to another; empty if they are not wanted.
     fn derivatives(&self, ratio: &Ratio, part: fn(&Complex<f64>) -> f64) -> Ordered<Vec<f64>> {
         let about = self.model.about();
         let row = |k: usize| {
@@ -237,10 +237,11 @@ impl<'a> Excited<'a> {
     }
 }
 
-/// What drives a channel: its denominator where that can be prescribed, else the road, else what there is along its axis.
+/// Excitation of a channel: its denominator if that can be prescribed, otherwise the road, otherwise another excitation
+/// along its axis.
 ///
 /// # Errors
-/// Nothing along that axis.
+/// Fails if there is no excitation along that axis.
 pub fn excitation(about: &About, channel: &Channel) -> Result<usize, Failure> {
     driver(about, channel).ok_or_else(|| {
         let axis = &channel.denominator.axis;
@@ -250,7 +251,7 @@ pub fn excitation(about: &About, channel: &Channel) -> Result<usize, Failure> {
     })
 }
 
-/// The heading of decibels, which are of a plain number or of so many units.
+/// Heading of a column of decibels, relative to 1 of the unit.
 fn decibels(name: &str, unit: &str) -> String {
     match unit {
         "1" => format!("{name}_dB"),
@@ -275,7 +276,7 @@ pub(crate) fn unit(about: &About, channel: &Channel) -> String {
     }
 }
 
-/// The unit of a signal: that of its output or input, or what follows from another derivative of the same motion.
+/// Unit of a signal: that of its output or input, or the unit that follows from another derivative of the same motion.
 fn unit_of(about: &About, signal: &Signal) -> String {
     let here = |other: &Signal| other.location == signal.location && other.axis == signal.axis;
     let outputs = about.outputs.iter().filter(|output| here(&output.signal));
@@ -301,7 +302,7 @@ fn unit_of(about: &About, signal: &Signal) -> String {
     unit.to_string()
 }
 
-/// What an input is as a signal.
+/// The signal of an input.
 fn driven(about: &About, input: &Input) -> Option<Signal> {
     let (place, kind) = match input.kind {
         InputKind::Motion(place, quantity) => (place, SignalKind::Motion(quantity)),

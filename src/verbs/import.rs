@@ -14,13 +14,13 @@ use clap_complete::engine::ArgValueCompleter;
 
 // Parts of a channel's name.
 mod tokens;
-// Which sensor a channel is, by its name and unit.
+// Sensor of a channel, from its name and unit.
 mod guess;
 // The sensors of a campaign.
 mod sensors;
 // Properties of a sweep, from the motion of its pad.
 mod swept;
-// Which kind of run a file is.
+// Kind of run of a file.
 mod kind;
 
 /// Create a campaign from measured files
@@ -44,16 +44,16 @@ pub struct Arguments {
     model: String,
 }
 
-/// A file and what is in it.
+/// A file and its contents.
 struct Measured {
-    /// As the user names it.
+    /// Path as the user gave it.
     file: PathBuf,
-    /// As the campaign must name it.
+    /// Path as the campaign must give it.
     seen: String,
     contents: Contents<kind::Driven>,
 }
 
-/// Does it.
+/// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     must_be_new(&arguments.out)?;
     let model = catalogue::load(&arguments.model)?;
@@ -81,7 +81,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     text += &sensors::sections(&proposed);
     text += &kind::sections(&runs.iter().flatten().collect::<Vec<_>>());
     put(&arguments.out, "campaign.toml", &text)?;
-    Ok(prose(&told(arguments, &files, &proposed, &runs)))
+    Ok(prose(&report(arguments, &files, &proposed, &runs)))
 }
 
 fn must_be_new(folder: &Path) -> Result<(), Failure> {
@@ -100,7 +100,7 @@ fn must_be_new(folder: &Path) -> Result<(), Failure> {
     }
 }
 
-/// The campaign is called as its folder is.
+/// The name of the campaign is that of its folder.
 fn name_of(folder: &Path) -> Result<String, Failure> {
     let name = folder.file_name().and_then(|name| name.to_str());
     name.map(String::from).ok_or_else(|| {
@@ -115,7 +115,7 @@ fn name_of(folder: &Path) -> Result<String, Failure> {
     })
 }
 
-fn told(
+fn report(
     arguments: &Arguments,
     files: &[Measured],
     proposed: &sensors::Sensors,
@@ -124,7 +124,7 @@ fn told(
     let mut text = String::new();
     for (file, runs) in files.iter().zip(runs) {
         text += &format!("{}: {}\n", file.file.display(), inspect::text(&file.contents));
-        text.extend(runs.iter().map(|run| format!("taken for {}\n", run.said())));
+        text.extend(runs.iter().map(|run| format!("taken for {}\n", run.description())));
         text += "\n";
     }
     text += &sensors::table(proposed);

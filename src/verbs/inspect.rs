@@ -20,7 +20,7 @@ mod contents;
 pub(super) use contents::{Contents, Look};
 pub(super) use course::Course;
 
-/// Significant digits of what is printed for people.
+/// Significant digits in the text output.
 const DIGITS: usize = 6;
 
 /// List the channels of a measured file: units, rates, ranges
@@ -38,7 +38,7 @@ pub struct Arguments {
     format: Format,
 }
 
-/// Does it.
+/// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let contents = Contents::summary(&arguments.file)?;
     Ok(match arguments.format {
@@ -47,7 +47,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     })
 }
 
-/// What a file holds, as JSON.
+/// Contents of a file, as JSON.
 #[derive(Serialize)]
 struct Inspected<'a> {
     format: &'a str,
@@ -149,7 +149,7 @@ impl<'a> Single<'a> {
     }
 }
 
-/// What is in a file, for people.
+/// Contents of a file, as text.
 pub(super) fn text<T>(contents: &Contents<T>) -> String {
     let recording = &contents.recording;
     let mut text = format!("{}, {} channels\n", recording.format, recording.signals.len());
@@ -163,7 +163,7 @@ pub(super) fn text<T>(contents: &Contents<T>) -> String {
         .map(|(signal, doubt)| format!("{}: {doubt}\n", signal.full_name()))
         .collect();
     if !doubts.is_empty() {
-        text += &format!("\nunits to be checked, which are taken as the file says them:\n{doubts}");
+        text += &format!("\nunits of the file that should be checked:\n{doubts}");
     }
     if !recording.scalars.is_empty() {
         text += &format!("\n{}", scalars(&recording.scalars));

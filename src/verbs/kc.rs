@@ -6,7 +6,7 @@ use clap::Args;
 use qcar_runtime::campaign::{Campaign, Run, Test};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::kc::{self, Estimate, KcError, SineSamples, Slope, cycle, sines};
-use qcar_runtime::progress::Told;
+use qcar_runtime::progress::OnProgress;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::roles::{OnRig, Roles};
 use serde::Serialize;
@@ -40,44 +40,44 @@ pub struct Arguments {
     format: Format,
 }
 
-/// What a curve says.
+/// A gradient of a K&C curve.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Gradient {
-    /// The curve, as the campaign calls it; of several sines the first.
+    /// File of the curve; the first file of several sines.
     #[serde(skip)]
     file: String,
-    /// What of the model is like it; `None` of what gives no parameter.
+    /// The parameter kind that it gives; `None` if it gives no parameter.
     #[serde(skip)]
     slope: Option<Slope>,
-    /// `bounce`, `dynamic_bounce` or `longitudinal`.
+    /// Test: `bounce`, `dynamic_bounce` or `longitudinal`.
     pub test: &'static str,
-    /// `stiffness`, `damping` or `friction`.
+    /// Quantity: `stiffness`, `damping` or `friction`.
     pub quantity: &'static str,
-    /// In `unit`.
+    /// Value, in `unit`.
     pub value: f64,
     /// One standard deviation, from the scatter of the curve and the scale of the rig.
     pub uncertainty: f64,
-    /// SI.
+    /// Unit, SI.
     pub unit: &'static str,
-    /// The parameter of the campaign's model that it gives.
+    /// The parameter of the campaign's model that it determines.
     pub parameter: Option<String>,
-    /// The value of that parameter with which the campaign's model has this gradient, its others at their start values:
-    /// larger than the gradient where a sub-frame yields.
+    /// The value of that parameter for which the model of the campaign, with its other start values, has this gradient.
+    /// It is larger than the gradient if a sub-frame yields.
     pub parameter_value: Option<f64>,
-    /// Why that is not known of a stiffness or damping that could give a parameter.
+    /// Why a stiffness or damping gives no value of a parameter; `None` if it gives one.
     pub why_no_parameter_value: Option<String>,
-    /// The campaign's start value of that parameter.
+    /// Start value of that parameter in the campaign.
     pub start: Option<f64>,
 }
 
 impl Gradient {
-    /// Along which the wheel was moved.
+    /// Axis of the wheel's motion.
     fn axis(&self) -> &'static str {
         if self.test == "longitudinal" { "x" } else { "z" }
     }
 }
 
-/// Does it.
+/// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let campaign = Campaign::open(&arguments.campaign)?;
     let gradients = gradients(&campaign)?;
@@ -90,19 +90,19 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     })
 }
 
-/// True where a campaign has K&C curves.
+/// True if a campaign has K&C curves.
 pub(crate) fn has_curves(campaign: &Campaign) -> bool {
     let is_curve = |test: &Test| matches!(test, Test::Bounce | Test::DynamicBounce { .. } | Test::Longitudinal);
     campaign.runs.iter().any(|run| is_curve(&run.test))
 }
 
-/// Gradients of all K&C runs; vertical sines are taken together.
+/// Gradients of all K&C runs; vertical sines are evaluated together.
 ///
 /// # Errors
-/// A campaign without K&C curves, and a curve without gradients.
+/// Fails if the campaign has no K&C curves, or if a curve has no gradient.
 pub(crate) fn gradients(campaign: &Campaign) -> Result<Vec<Gradient>, InputError> {
-    let mut found = while_counting(format!("{}: K&C curve", campaign.name), |told| {
-        of_curves(campaign, told)
+    let mut found = while_counting(format!("{}: K&C curve", campaign.name), |on_progress| {
+        of_curves(campaign, on_progress)
     })?;
     if found.is_empty() {
         let expected = "a run of kind bounce, dynamic_bounce or longitudinal";
@@ -134,8 +134,8 @@ pub(crate) fn gradients(campaign: &Campaign) -> Result<Vec<Gradient>, InputError
     Ok(found)
 }
 
-/// Those of all curves, in the order of the tests.
-fn of_curves(campaign: &Campaign, told: Told<'_>) -> Result<Vec<Gradient>, InputError> {
+/// Gradients of all curves, in the order of the tests.
+fn of_curves(campaign: &Campaign, on_progress: OnProgress<'_>) -> Result<Vec<Gradient>, InputError> {
     let of = |wanted: fn(&Test) -> bool| campaign.runs.iter().filter(move |run| wanted(&run.test)).collect();
     let bounce: Vec<&Run> = of(|test| matches!(test, Test::Bounce));
     let dynamic: Vec<&Run> = of(|test| matches!(test, Test::DynamicBounce { .. }));
@@ -143,15 +143,15 @@ fn of_curves(campaign: &Campaign, told: Told<'_>) -> Result<Vec<Gradient>, Input
     let all = bounce.len() + dynamic.len() + longitudinal.len();
     let mut found = Vec::new();
     for (done, run) in bounce.iter().enumerate() {
-        told(done, all);
+        on_progress(done, all);
         found.extend(quasi_static(campaign, run, "bounce")?);
     }
-    told(bounce.len(), all);
+    on_progress(bounce.len(), all);
     if !dynamic.is_empty() {
         found.extend(vertical_sines(campaign, &dynamic)?);
     }
     for (done, run) in longitudinal.iter().enumerate() {
-        told(bounce.len() + dynamic.len() + done, all);
+        on_progress(bounce.len() + dynamic.len() + done, all);
         found.extend(quasi_static(campaign, run, "longitudinal")?);
     }
     Ok(found)
@@ -202,7 +202,7 @@ fn gradient(
     }
 }
 
-/// The campaign's model with its start values, or why there is none: curves can be read without.
+/// The model of the campaign with its start values, or why there is none. Curves can be read without a model.
 fn model(campaign: &Campaign) -> Result<(Loaded, Values), String> {
     let refused = |failure: Failure| failure.to_string().trim_end().to_string();
     let model = catalogue::of_campaign(campaign, None).map_err(refused)?;
@@ -214,7 +214,7 @@ fn model(campaign: &Campaign) -> Result<(Loaded, Values), String> {
     Ok((model, values))
 }
 
-/// Asks the model which parameter a gradient gives, where that is not known yet, and what it must be.
+/// Determines from the model which parameter a gradient gives, and its value, if that is not known yet.
 pub(crate) fn take_apart(gradient: &mut Gradient, campaign: &Campaign, model: &Loaded, values: &Values) {
     let Some(slope) = gradient.slope else { return };
     let roles = Roles::of(model.about(), &campaign.roles).and_then(|roles| roles.on_rig());
@@ -235,10 +235,10 @@ pub(crate) fn take_apart(gradient: &mut Gradient, campaign: &Campaign, model: &L
     }
 }
 
-/// The parameter, and its value or why no value gives what was measured.
+/// The parameter, and its value or why no value gives the measured gradient.
 ///
 /// # Errors
-/// Why the gradient gives no parameter of this model.
+/// Why the gradient determines no parameter of this model.
 fn parameter_value(
     gradient: &Gradient,
     asked: (&OnRig, &str, Slope),
@@ -268,10 +268,10 @@ fn parameter_value(
     Ok((name, value))
 }
 
-/// By how much a gradient may differ from that of the model at its start values: beyond that a unit is wrong.
+/// Largest ratio of a gradient to that of the model at its start values; beyond it a unit is wrong.
 const SCALE: f64 = 100.0;
 
-/// What is wrong with a curve whose gradient is of another order than the model's.
+/// Problem of a curve whose gradient is of another order of magnitude than that of the model.
 fn out_of_scale(gradient: &Gradient, campaign: &Campaign, model: &Loaded, values: &Values) -> Option<Problem> {
     let on = Roles::of(model.about(), &campaign.roles)
         .and_then(|roles| roles.on_rig())
@@ -334,7 +334,7 @@ fn text(of: &[Gradient]) -> String {
     table.text() + &notes(of)
 }
 
-/// Each reason once, with the parameters, or the gradients without any, that have no value by it.
+/// Each reason once, with the parameters (or the gradients without a parameter) that have no value because of it.
 fn notes(of: &[Gradient]) -> String {
     let mut reasons: Vec<(&str, Vec<String>)> = Vec::new();
     for gradient in of {

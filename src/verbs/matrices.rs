@@ -29,7 +29,7 @@ pub struct Arguments {
     format: Format,
 }
 
-/// Does it.
+/// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let model = catalogue::load_wanted(&arguments.model.model, Wanted::Values)?;
     let about = model.about();

@@ -32,7 +32,7 @@ enum What {
     Template(template::Arguments),
 }
 
-/// Does it.
+/// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     match &arguments.what {
         What::Axle(arguments) => axle::run(arguments),
@@ -41,7 +41,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     }
 }
 
-/// A name, and where it is to stand.
+/// A name, and the folder for its files.
 #[derive(Args)]
 struct Named {
     /// Lower-case letters, digits and `_`, a letter first
@@ -57,7 +57,7 @@ impl Named {
         self.dir.as_deref().unwrap_or("".as_ref())
     }
 
-    /// Refuses what neither a model file nor every file system takes as a name.
+    /// Checks a name against the rules of model files and file systems.
     fn check(&self) -> Result<(), Failure> {
         let first_is_letter = self.name.starts_with(|c: char| c.is_ascii_lowercase());
         let is_plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
@@ -70,7 +70,7 @@ impl Named {
     }
 }
 
-/// Refuses to write over a file or folder.
+/// Fails if a file or folder exists.
 fn must_be_new(path: &Path) -> Result<(), Failure> {
     if !path.exists() {
         return Ok(());

@@ -39,10 +39,10 @@ pub struct Arguments {
     out: Option<PathBuf>,
 }
 
-/// What stands where a discovery would say why the effect is there.
+/// Text in place of the evidence of a discovery.
 const NO_EVIDENCE: &str = "Evidence: none yet.";
 
-/// Does it.
+/// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let compiled = catalogue::compiled(&arguments.model.model)?;
     let values = parameters::given(arguments.model.params.as_deref(), &arguments.model.set)?;

@@ -1,4 +1,4 @@
-//! `qcar plan`: which further sensor, run or level would tell most about the parameters of a fit.
+//! `qcar plan`: the further sensor, run or level with the most information about the parameters of a fit.
 
 use std::path::PathBuf;
 
@@ -8,7 +8,7 @@ use qcar_runtime::campaign::Campaign;
 use qcar_runtime::discover::candidate::Workshop;
 use qcar_runtime::discover::posterior;
 use qcar_runtime::error::InputError;
-use qcar_runtime::fit::prospect::{Kind, Prospects, prospects};
+use qcar_runtime::fit::design::{ExpectedGains, Kind, expected_gains};
 use qcar_runtime::model::About;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::spelling;
@@ -28,10 +28,11 @@ use crate::verbs::fit::{self, Choices, nonlinear};
 /// Print which further sensor, run or level would tell most about the parameters of a campaign
 ///
 /// The model is fitted. Each candidate measurement is then judged by the rise of the log determinant of the Fisher
-/// information about the parameters (D-optimality), and the standard errors to expect are printed. Candidates are: a sensor at each
-/// output of the model that no fitted run records, a run driven by an unused excitation, and a fitted run repeated at its level, at twice
-/// its level, or beyond either end of its band. A new sensor is assumed as noisy as the existing ones. A nonlinear model is fitted to
-/// all runs; its candidates are sensors, repeated runs, sines at twice their level, and a dynamometer's table of each link.
+/// information about the parameters (D-optimality), and the standard errors to expect are printed. Candidates are: a
+/// sensor at each output of the model that no fitted run records, a run driven by an unused excitation, and a fitted
+/// run repeated at its level, at twice its level, or beyond either end of its band. A new sensor is assumed as noisy as
+/// the existing ones. A nonlinear model is fitted to all runs; its candidates are sensors, repeated runs, sines at
+/// twice their level, and a dynamometer's table of each link.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar plan models/campaigns/axle_a_rig\n  qcar plan models/campaigns/axle_a_rig --parameters c_wheel_z,c_tire --format json"
@@ -59,7 +60,7 @@ pub struct Arguments {
     format: Format,
 }
 
-/// What is known, and what could be.
+/// Present errors and candidates.
 #[derive(Serialize)]
 struct Planned {
     campaign: String,
@@ -75,7 +76,7 @@ struct Parameter {
     unit: String,
     value: f64,
     stderr: Option<f64>,
-    /// Whether it was asked for.
+    /// True if it was requested.
     asked: bool,
 }
 
@@ -85,11 +86,11 @@ struct Further {
     kind: Kind,
     what: String,
     rise: f64,
-    /// Expected, by parameter.
+    /// Expected standard errors, by parameter.
     stderr: Ordered<Option<f64>>,
 }
 
-/// Does it.
+/// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let campaign = Campaign::open(&arguments.campaign)?;
     let model = catalogue::of_campaign(&campaign, arguments.model.as_deref())?;
@@ -109,7 +110,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     })
 }
 
-/// By a fit to transmissibilities.
+/// Candidates for a fit to transmissibilities.
 fn of_channels(arguments: &Arguments, choices: &Choices) -> Result<Planned, Failure> {
     let fitted = fit::fit(&arguments.campaign, choices)?;
     let plan = fitted.as_plan(choices)?;
@@ -120,8 +121,14 @@ fn of_channels(arguments: &Arguments, choices: &Choices) -> Result<Planned, Fail
         .map(|own| &*own.name)
         .collect();
     check_names(&names, &arguments.parameters)?;
-    let found = while_counting(work(&fitted.campaign), |told| {
-        prospects(&*fitted.model, &plan, &fitted.levels, &arguments.parameters, told)
+    let found = while_counting(work(&fitted.campaign), |on_progress| {
+        expected_gains(
+            &*fitted.model,
+            &plan,
+            &fitted.levels,
+            &arguments.parameters,
+            on_progress,
+        )
     })?;
     let (about, values) = (fitted.model.about(), fitted.values());
     Ok(planned(
@@ -132,7 +139,7 @@ fn of_channels(arguments: &Arguments, choices: &Choices) -> Result<Planned, Fail
     ))
 }
 
-/// By a fit to all runs.
+/// Candidates for a fit to all runs.
 fn of_runs(campaign: Campaign, arguments: &Arguments, choices: &Choices) -> Result<Planned, Failure> {
     let fitted = nonlinear::fit(campaign, choices)?;
     let names: Vec<&str> = fitted
@@ -146,8 +153,14 @@ fn of_runs(campaign: Campaign, arguments: &Arguments, choices: &Choices) -> Resu
         fitted.bench().clone().with_every_link_alone(),
         &fitted.found.explanation.refit,
     );
-    let found = while_counting(work(&fitted.campaign), |told| {
-        posterior::prospects(bench.model(), refit, &fitted.evidence, &arguments.parameters, told)
+    let found = while_counting(work(&fitted.campaign), |on_progress| {
+        posterior::expected_gains(
+            bench.model(),
+            refit,
+            &fitted.evidence,
+            &arguments.parameters,
+            on_progress,
+        )
     });
     let found =
         found.map_err(|error| Failure::Input(format!("{}: {error}\n", fitted.campaign.manifest().display())))?;
@@ -165,7 +178,7 @@ fn work(campaign: &Campaign) -> String {
 }
 
 /// # Errors
-/// Every name of no parameter that is fitted.
+/// Fails if a name is not that of a fitted parameter.
 fn check_names(fitted: &[&str], names: &[String]) -> Result<(), InputError> {
     let unknown = names.iter().filter(|name| !fitted.contains(&name.as_str()));
     let problem = |name: &String| {
@@ -180,7 +193,7 @@ fn check_names(fitted: &[&str], names: &[String]) -> Result<(), InputError> {
     InputError::unless_empty(unknown.map(problem).collect(), Some(()))
 }
 
-fn planned(campaign: &Campaign, (about, values): (&About, &Values), found: Prospects, asked: &[String]) -> Planned {
+fn planned(campaign: &Campaign, (about, values): (&About, &Values), found: ExpectedGains, asked: &[String]) -> Planned {
     let name = |place: usize| about.parameters[place].name.to_string();
     let parameter = |(&place, stderr): (&usize, &Option<f64>)| {
         let own = Parameter {
@@ -210,14 +223,14 @@ fn planned(campaign: &Campaign, (about, values): (&About, &Values), found: Prosp
     }
 }
 
-/// Measurements whose errors are printed beside each other.
+/// Number of measurements whose errors are printed side by side.
 const ACROSS: usize = 4;
 
 impl Planned {
     fn text(&self) -> String {
         let count = counted(self.parameters.0.len(), "parameter");
         let mut out = format!(
-            "{}: candidates by what they tell about {count} of {}\n",
+            "{}: candidates by their information about {count} of {}\n",
             self.campaign, self.model
         );
         out += &noted(&self.notices);
@@ -244,7 +257,7 @@ impl Planned {
         table
     }
 
-    /// The two parameters whose errors fall most, in words.
+    /// The two parameters whose errors decrease most, as text.
     fn relief(&self, of: &Further) -> String {
         let mut falls: Vec<(f64, String)> = Vec::new();
         for ((name, own), (_, then)) in self
@@ -288,5 +301,5 @@ impl Planned {
     }
 }
 
-/// An error that falls to less than this part of itself is worth a word.
+/// An error is mentioned if it decreases to less than this share.
 const NOTABLE: f64 = 0.98;

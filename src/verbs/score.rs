@@ -14,7 +14,7 @@ use crate::table::{Table, number, or_dash};
 use crate::terminal::prose;
 use crate::verbs::fit::{self, Choices, Fitted};
 
-/// A standard error below this part of the value means that the data determine it well.
+/// A standard error below this share of the value counts as well determined.
 const WELL_DETERMINED: f64 = 0.02;
 
 /// Fit campaigns whose true parameters are known (truth.toml), and compare
@@ -31,7 +31,7 @@ pub struct Arguments {
     within: f64,
 }
 
-/// Does it.
+/// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let mut reports = String::new();
     let mut all_well = true;
@@ -52,7 +52,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     }
 }
 
-/// The folders with an answer: those that were named, or their subfolders in alphabetical order.
+/// The folders with a truth.toml: the given ones, or their subfolders in alphabetical order.
 fn campaigns(named: &[PathBuf]) -> Result<Vec<PathBuf>, InputError> {
     let mut found = Vec::new();
     for folder in named {

@@ -200,8 +200,8 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         doubts: &doubts,
         global: plan.map(|plan| (plan, arguments.spread.0)),
     };
-    let found = while_counting(format!("{}: design", subject.name), |told| {
-        gather::gather(&subject, &mut ground, &asked, told)
+    let found = while_counting(format!("{}: design", subject.name), |on_progress| {
+        gather::gather(&subject, &mut ground, &asked, on_progress)
     });
     let found = found.map_err(|error| refused(&subject.name, &error))?;
     if let Some(folder) = &arguments.out {

@@ -1,4 +1,4 @@
-//! `qcar show`: each stage of a model, for people.
+//! `qcar show`: each stage of a model, as text.
 
 use clap::{Args, ValueEnum};
 use clap_complete::engine::ArgValueCompleter;
@@ -43,7 +43,7 @@ enum Stage {
     Dot,
 }
 
-/// Does it.
+/// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     match &arguments.model {
         Some(model) => {
@@ -55,7 +55,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
 }
 
 impl Stage {
-    /// The generated module alone shows derivatives of responses.
+    /// Only the generated module shows derivatives of responses.
     fn wants(self) -> Wanted {
         match self {
             Stage::Rust => Wanted::Jacobian,

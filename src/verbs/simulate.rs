@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use clap_complete::engine::ArgValueCompleter;
 use qcar_runtime::campaign::{Campaign, Test};
 use qcar_runtime::error::{InputError, Place, Problem};
-use qcar_runtime::progress::Told;
+use qcar_runtime::progress::OnProgress;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::simulate::{Car, Cleat, Drive, Ride, Settings, SimulateError, Variant, rides, tyre};
 
@@ -70,7 +70,7 @@ pub struct Arguments {
     format: TableFormat,
 }
 
-/// What is simulated.
+/// The model and its values.
 #[derive(Args, Default)]
 pub struct Choices {
     /// Simulate this model, by name or path, instead of the campaign's
@@ -87,7 +87,7 @@ pub struct Choices {
     pub variant: VariantName,
 }
 
-/// How much of a model is simulated over cleats.
+/// Part of a model that is simulated over cleats.
 #[derive(Clone, Copy, Default, ValueEnum)]
 pub enum VariantName {
     /// All of it
@@ -99,7 +99,7 @@ pub enum VariantName {
     Vertical,
 }
 
-/// Does it.
+/// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     if !arguments.road.is_empty() {
         return over_roads(arguments);
@@ -118,7 +118,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     })
 }
 
-/// Rolls over roads in place of the runs of the campaign.
+/// Rolls over roads instead of the runs of the campaign.
 fn over_roads(arguments: &Arguments) -> Result<String, Failure> {
     let Opened {
         campaign,
@@ -137,7 +137,7 @@ fn over_roads(arguments: &Arguments) -> Result<String, Failure> {
     })
 }
 
-/// A campaign with its model and the values of that.
+/// A campaign with its model and the parameter values.
 struct Opened {
     campaign: Campaign,
     model: Loaded,
@@ -169,7 +169,7 @@ pub struct Simulated {
 /// Simulates the cleat runs, sweeps and time histories of a campaign.
 ///
 /// # Errors
-/// A campaign without any of them, and what keeps one from being read or simulated.
+/// Fails if the campaign has no such run, or if a run cannot be read or simulated.
 pub fn simulate(campaign: &Path, choices: &Choices) -> Result<Simulated, Failure> {
     let Opened {
         campaign,
@@ -192,12 +192,12 @@ pub fn simulate(campaign: &Path, choices: &Choices) -> Result<Simulated, Failure
 }
 
 impl Simulated {
-    /// The errors as `docs/json.md` describes them.
+    /// The errors as JSON, see `docs/json.md`.
     pub fn json(&self) -> String {
         self.result().json()
     }
 
-    /// What each run would have recorded: of a cleat run all outputs and the tyre's force, of others measured beside simulated.
+    /// Signals of each run: all outputs and the tyre force of a cleat run; measured and simulated signals of others.
     pub fn histories(&self) -> Vec<History> {
         let records = self.records.iter().map(render::beside);
         self.cleat_histories().into_iter().chain(records).collect()
@@ -242,8 +242,8 @@ fn nothing_to_simulate(campaign: &Campaign, expected: &str) -> Problem {
     Problem::new(campaign.manifest(), place, "none that is simulated", expected, remedy)
 }
 
-/// The parameters that the campaign wants fitted and that still have its start values: no error is the model's before
-/// these are known.
+/// Parameters to fit that still have their start values. Until they are fitted, errors cannot be attributed to the
+/// model.
 pub(crate) fn guessed(campaign: &Campaign, model: &Loaded, values: &Values) -> Vec<String> {
     let parameters = model.about().parameters.iter().zip(values.as_slice());
     let is_start = |name: &str, value: f64| {
@@ -268,7 +268,7 @@ pub(crate) struct Driven {
 /// Drives a model over the cleats of a campaign.
 ///
 /// # Errors
-/// Masses that are not above zero, a vehicle without a tyre, and rides that cannot be simulated or compared.
+/// Fails if a mass is not positive, if the vehicle has no tyre, or if a ride cannot be simulated or compared.
 pub(crate) fn drive(
     campaign: &Campaign,
     model: &Loaded,
@@ -286,7 +286,7 @@ pub(crate) fn drive(
         variant,
     };
     let drives: Vec<Drive> = cleats.iter().map(Cleat::drive).collect();
-    let simulate = |told: Told<'_>| rides(&car, &drives, &Settings::default(), told);
+    let simulate = |on_progress: OnProgress<'_>| rides(&car, &drives, &Settings::default(), on_progress);
     let rides = while_counting(format!("{}: ride", campaign.name), simulate);
     let rides = checked(cleats, rides)?;
     let compared = compared::compare(model.about(), &campaign.roles, cleats, &rides)?;
@@ -306,7 +306,7 @@ impl From<VariantName> for Variant {
 /// The cleat runs of a campaign.
 ///
 /// # Errors
-/// A campaign without any, a record that cannot be read, a road that cannot be driven over.
+/// Fails if the campaign has no cleat runs, or if a record or road cannot be read.
 pub(crate) fn cleats(campaign: &Campaign) -> Result<Vec<Cleat>, InputError> {
     let (mut found, mut problems) = (Vec::new(), Vec::new());
     for run in &campaign.runs {
@@ -321,10 +321,10 @@ pub(crate) fn cleats(campaign: &Campaign) -> Result<Vec<Cleat>, InputError> {
     InputError::unless_empty(problems, Some(found))
 }
 
-/// What a run says that cannot be simulated.
+/// Message for a run that cannot be simulated.
 const NO_RIDE: &str = "this run cannot be simulated";
 
-/// The rides, if there is one for every run. What keeps several of them from being simulated is said once.
+/// The rides, if all succeeded. Equal errors of several rides are reported once.
 fn checked(cleats: &[Cleat], rides: Vec<Result<Ride, SimulateError>>) -> Result<Vec<Ride>, InputError> {
     let (mut done, mut problems): (Vec<Ride>, Vec<Problem>) = (Vec::new(), Vec::new());
     for (cleat, ride) in cleats.iter().zip(rides) {
@@ -332,7 +332,7 @@ fn checked(cleats: &[Cleat], rides: Vec<Result<Ride, SimulateError>>) -> Result<
             Ok(ride) => done.push(ride),
             Err(error) => {
                 let problem = Problem::refused(&cleat.measured.file, Place::File, NO_RIDE, error);
-                if problems.iter().all(|told| told.found != problem.found) {
+                if problems.iter().all(|known| known.found != problem.found) {
                     problems.push(problem);
                 }
             }

@@ -1,4 +1,4 @@
-//! `qcar study`: the whole job of a ride engineer on one campaign, and a report of it.
+//! `qcar study`: all verbs on one campaign, and a report.
 
 use std::path::PathBuf;
 
@@ -30,7 +30,7 @@ mod track;
 // Records over time.
 mod records;
 // The residuals and their explanation.
-mod gap;
+mod residuals;
 // The result in a few numbers.
 mod summary;
 // Inputs and versions of the study.
@@ -62,7 +62,7 @@ pub struct Arguments {
     format: Format,
 }
 
-/// Does it.
+/// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let study = gather::gather(&arguments.campaign, arguments.model.as_deref(), &arguments.out)?;
     let contents = contents::Contents::of(&study);

@@ -4,7 +4,7 @@ use models::axle_d::AxleD;
 use qcar_runtime::campaign::RoleNames;
 use qcar_runtime::metric::Ground;
 use qcar_runtime::model::Model;
-use qcar_runtime::progress::UNTOLD;
+use qcar_runtime::progress::NO_PROGRESS;
 use qcar_runtime::random::SplitMix;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::sensitivity::Chance;
@@ -46,7 +46,7 @@ fn a_hundred_thousand_designs_in_the_space_of_an_axle_are_as_good_as_it_says() {
         means: Vec::new(),
         chance: Chance::default(),
     };
-    let found = space(&task_of(&axle), &[], SpaceSettings::default(), UNTOLD).expect("there are good designs");
+    let found = space(&task_of(&axle), &[], SpaceSettings::default(), NO_PROGRESS).expect("there are good designs");
     assert!(found.at_least >= WANTED, "{found:?}");
     let share = good_inside(&task_of(&axle), &found, 100_000);
     println!("{share}");

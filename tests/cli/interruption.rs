@@ -62,7 +62,7 @@ fn stopped_on_the_way(folder: &Path) -> String {
         sleep(Duration::from_millis(250 << doubled));
         let (status, said, told) = interrupted(child);
         assert_eq!((status, said.as_str()), (Some(130), ""), "{told}");
-        if told.contains("so far: the model alone leaves a gap") {
+        if told.contains("so far: the base model alone leaves") {
             return told;
         }
         assert!(told.contains("no file was written"), "{told}");

@@ -1,5 +1,6 @@
-//! Laws of several stretches: links that use each other's stretch or rate are one element with several travels. Together they
-//! must take energy, and their elastic forces must have one potential, or a closed path of the travels would give energy.
+//! Laws of several stretches: links that use each other's stretch or rate form one element with several travels.
+//! Together they must dissipate energy, and their elastic forces must have one potential, otherwise a closed path of
+//! the travels would supply energy.
 
 use super::Scratch;
 use super::passive::{SPEED, TRAVEL, TRIALS, centred, drawn};
@@ -8,7 +9,8 @@ use crate::diagnostic::{Diagnostic, structure};
 use crate::expr::{CoordinateId, Expr, LinkId, Symbol};
 use crate::model::{CoordinateKind, Link};
 
-/// No links that are coupled give energy, but for what is called active, and none of them ends at a massless node.
+/// Checks that coupled links supply no energy, unless they are declared active, and that none of them ends at a
+/// massless node.
 pub fn couplings_are_sound(scratch: &Scratch) -> Vec<Diagnostic> {
     let groups = groups(scratch);
     let judge = |group: &Vec<LinkId>| pushes_along(scratch, group).or_else(|| has_no_potential(scratch, group));
@@ -20,13 +22,14 @@ fn link<'a>(scratch: &Scratch<'a>, id: LinkId) -> &'a Link {
     &scratch.model.links[usize::from(id.0)]
 }
 
-/// Laws with states store energy that cannot be told from what they give; their links are judged each by itself.
+/// Links without states. The stored energy of laws with states cannot be separated from the supplied one, so such links
+/// are judged individually.
 fn is_judged(scratch: &Scratch, group: &[LinkId]) -> bool {
     let laws = || group.iter().map(|&id| &link(scratch, id).law);
     !laws().any(|law| law.active) && laws().all(|law| law.inner.is_empty())
 }
 
-/// Links that a use of one in the law of another joins, several in each.
+/// Groups of links whose laws use each other.
 fn groups(scratch: &Scratch) -> Vec<Vec<LinkId>> {
     let mut groups: Vec<Vec<LinkId>> = Vec::new();
     for (id, slopes) in (0..).map(LinkId).zip(&scratch.slopes) {
@@ -43,7 +46,8 @@ fn groups(scratch: &Scratch) -> Vec<Vec<LinkId>> {
     groups
 }
 
-/// The first law of several stretches at each massless node: the balance of the node would need all of them at once.
+/// The first law of several stretches at each massless node: the balance of the node would need all of the links at
+/// once.
 fn at_nodes(scratch: &Scratch) -> Vec<Diagnostic> {
     let is_node = |c: &CoordinateId| scratch.model.coordinates[usize::from(c.0)].kind == CoordinateKind::Node;
     let ids = (0..).map(LinkId).zip(&scratch.slopes);
@@ -59,7 +63,7 @@ fn at_nodes(scratch: &Scratch) -> Vec<Diagnostic> {
     coupled.filter_map(mistake).collect()
 }
 
-/// A faster motion that the links together help on.
+/// A faster motion that the links together support.
 fn pushes_along(scratch: &Scratch, group: &[LinkId]) -> Option<Diagnostic> {
     let forces = forces(scratch, group);
     (0..TRIALS).find_map(|trial| {
@@ -78,7 +82,7 @@ fn pushes_along(scratch: &Scratch, group: &[LinkId]) -> Option<Diagnostic> {
     })
 }
 
-/// Two links of which each pulls otherwise with the stretch of the other.
+/// Two links whose forces have no common potential: the derivatives by each other's stretch differ.
 fn has_no_potential(scratch: &Scratch, group: &[LinkId]) -> Option<Diagnostic> {
     let pairs = group
         .iter()
@@ -91,7 +95,7 @@ fn has_no_potential(scratch: &Scratch, group: &[LinkId]) -> Option<Diagnostic> {
             let Some(values) = values(scratch, &known, trial, group, 0.0) else {
                 return false;
             };
-            // Only one of the two uses the other.
+            // Only one of the two laws uses the other link.
             let [a, b] = [values[0], values.get(1).copied().unwrap_or_default()];
             (a - b).abs() > 1e-6 * (a.abs() + b.abs())
         })
@@ -104,7 +108,7 @@ fn forces(scratch: &Scratch, group: &[LinkId]) -> Vec<Expr> {
     group.iter().map(|id| scratch.slopes[usize::from(id.0)].force).collect()
 }
 
-/// How the force of a link grows with the stretch of another, where it uses that.
+/// Derivative of the force of a link by the stretch of another; `None` if its law does not use that.
 fn slope(scratch: &Scratch, of: LinkId, by: LinkId) -> Option<Expr> {
     let mut others = scratch.slopes[usize::from(of.0)].others.iter();
     others.find(|(link, _)| *link == by).map(|&(_, stiffness)| stiffness)
@@ -119,8 +123,8 @@ fn speed(trial: u64, id: LinkId) -> f64 {
     SPEED * centred(trial, tag(Symbol::Rate(id)))
 }
 
-/// Expressions at a trial, with the links of a group stretched, and moving as fast as `moving` times their speeds; `None` where
-/// a parameter has neither range nor default.
+/// Expressions at a trial, with the links of a group stretched, and their speeds multiplied by `moving`; `None` if a
+/// parameter has neither range nor default.
 fn values(scratch: &Scratch, of: &[Expr], trial: u64, group: &[LinkId], moving: f64) -> Option<Vec<f64>> {
     let parameters = drawn(scratch, of, trial)?;
     let leaf = |symbol| {

@@ -1,11 +1,11 @@
-//! Links that repeat each other.
+//! Duplicate links.
 
 use crate::diagnostic::{Diagnostic, structure};
 use crate::expr::{CoordinateId, Expr, Graph};
 use crate::model::{Link, Model, Term};
 
-/// No two links of one stretch have the same kind of linear term: a spring beside a damper is how corners are drawn,
-/// a spring beside a spring is one spring.
+/// Checks that no two links of one stretch have the same kind of linear term. A spring beside a damper is usual, but
+/// two parallel springs are one spring.
 pub fn links_are_distinct(model: &Model, graph: &Graph) -> Vec<Diagnostic> {
     let mut graph = graph.clone();
     let mut found = Vec::new();

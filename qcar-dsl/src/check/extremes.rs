@@ -14,8 +14,8 @@ pub struct Extreme {
     pub at: Vec<(String, f64)>,
 }
 
-/// The value that `pick` prefers over the declared ranges: from bound to bound of one parameter after the other, as
-/// long as it helps. `None` where a parameter has neither range nor default, or the expression depends on a motion.
+/// The value that `pick` prefers over the declared ranges, by coordinate search from bound to bound. `None` if a
+/// parameter has neither range nor default, or if the expression depends on a motion.
 pub fn extreme(scratch: &Scratch, e: Expr, pick: fn(f64, f64) -> f64) -> Option<Extreme> {
     let mut ranges = BTreeMap::new();
     for symbol in scratch.graph.symbols([e]) {

@@ -8,15 +8,15 @@ use crate::diagnostic::{Diagnostic, structure};
 use crate::expr::CoordinateId;
 use crate::model::{Coordinate, CoordinateKind, Direction, Model};
 
-/// How many motions decide whether a law can carry a static load: a stop may be out of reach in one of them.
+/// Number of motions at which a law is tested for a static load, since a stop may be out of reach in one of them.
 const MOTIONS: u64 = 8;
 
-/// An angular frequency, rad/s, at which dampers give way and springs do not, and the stiffness that dampers then have.
+/// An angular frequency, rad/s, at which dampers yield and springs do not, and the stiffness of dampers there.
 const NEARLY_STATIC: f64 = 1e-9;
 const NEARLY_NOTHING: f64 = 1e-3;
 
-/// Masses that move freely. A whole direction that touches no road and no ground may float, as the longitudinal
-/// chain of a vehicle does; a part of it may not.
+/// Masses that move freely. A complete direction without road and ground may float, as the longitudinal chain of a
+/// vehicle does; a part of it may not.
 pub fn masses_are_held(scratch: &Scratch) -> Vec<Diagnostic> {
     let model = scratch.model;
     let mut found = Vec::new();
@@ -61,7 +61,7 @@ fn free(model: &Model) -> Vec<CoordinateId> {
         .collect()
 }
 
-/// A direction without any prescribed motion and without gravity has no place of its own.
+/// True for a direction without prescribed motion and without gravity, whose position is undetermined.
 fn floats(model: &Model, direction: &Direction) -> bool {
     let prescribed = |coordinate: &Coordinate| {
         coordinate.direction == *direction && matches!(coordinate.kind, CoordinateKind::Road | CoordinateKind::Motion)
@@ -69,7 +69,7 @@ fn floats(model: &Model, direction: &Direction) -> bool {
     !model.coordinates.iter().any(prescribed) && !model.gravities.iter().any(|g| g.direction == *direction)
 }
 
-/// The links whose force goes on growing with a stretch that stays.
+/// Links whose force keeps growing with a constant stretch.
 fn carrying(scratch: &Scratch) -> Vec<bool> {
     let mut carries = vec![false; scratch.slopes.len()];
     for seed in 0..MOTIONS {
@@ -85,7 +85,7 @@ fn carrying(scratch: &Scratch) -> Vec<bool> {
     carries
 }
 
-/// The masses that can move without stretching any link of those that hold, but for floating directions.
+/// Masses that can move without stretching any holding link, except in floating directions.
 fn loose<'a>(
     scratch: &Scratch<'a>,
     free: &[CoordinateId],
@@ -111,7 +111,7 @@ fn loose<'a>(
     support(&null).into_iter().map(coordinate).filter(is_mass).collect()
 }
 
-/// A row for each floating direction that holds its largest connected group at one place; smaller groups are cut off.
+/// A row for each floating direction that fixes its largest connected group; smaller groups are separate.
 fn tethers(model: &Model, free: &[CoordinateId], floats: impl Fn(&Direction) -> bool) -> Vec<Vec<f64>> {
     let direction = |id: &CoordinateId| &model.coordinates[usize::from(id.0)].direction;
     let mut rows: Vec<(&Direction, Vec<f64>)> = Vec::new();
@@ -134,7 +134,7 @@ fn tethers(model: &Model, free: &[CoordinateId], floats: impl Fn(&Direction) -> 
     rows.into_iter().map(|(_, row)| row).collect()
 }
 
-/// Coordinates that links connect.
+/// Groups of coordinates that links connect.
 fn groups(model: &Model, free: &[CoordinateId]) -> Vec<Vec<CoordinateId>> {
     let mut groups: Vec<Vec<CoordinateId>> = free.iter().map(|&id| vec![id]).collect();
     for link in &model.links {

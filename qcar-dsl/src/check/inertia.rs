@@ -6,8 +6,8 @@ use crate::diagnostic::{Diagnostic, structure};
 use crate::expr::{Expr, Node, Symbol};
 use crate::model::{CoordinateKind, Default, Model};
 
-/// Every inertia is positive: at the defaults, somewhere in the declared ranges, and wherever it is one parameter in
-/// the whole of its range. A difference of masses need not be positive everywhere: ranges know nothing of each other.
+/// Checks that every inertia is positive at the defaults and somewhere in the declared ranges, and over the whole range
+/// if it is a single parameter. A difference of masses need not be positive everywhere, since ranges are independent.
 pub fn inertias_are_positive(scratch: &Scratch) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for coordinate in &scratch.model.coordinates {
@@ -28,7 +28,7 @@ pub fn inertias_are_positive(scratch: &Scratch) -> Vec<Diagnostic> {
     found
 }
 
-/// The value at the defaults, where all parameters in it have one.
+/// The value at the defaults; `None` if a parameter has none.
 fn defaults(scratch: &Scratch, e: Expr) -> Option<f64> {
     let symbols = scratch.graph.symbols([e]);
     let all = symbols.iter().all(|&symbol| default(scratch.model, symbol).is_some());

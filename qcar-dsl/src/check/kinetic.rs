@@ -5,11 +5,11 @@ use super::sample::{bounds, uniform};
 use crate::expr::{CoordinateId, Expr, Symbol};
 use crate::model::{CoordinateKind, Term};
 
-/// How many parameter sets within the declared ranges are tried.
+/// Number of parameter sets within the declared ranges that are tried.
 const TRIALS: u64 = 256;
 
-/// No motion has a negative kinetic energy, at any parameters at which the masses themselves are positive. A rigid body
-/// over two supports may be two masses and a negative inertance between them.
+/// Checks that no motion has a negative kinetic energy, for all parameters with positive masses. A rigid body on two
+/// supports may be two masses with a negative inertance between them.
 pub fn stays_positive(scratch: &Scratch) -> bool {
     (0..TRIALS).filter_map(|trial| matrix(scratch, trial)).all(is_positive)
 }
@@ -20,7 +20,7 @@ fn matrix(scratch: &Scratch, trial: u64) -> Option<Vec<Vec<f64>>> {
     let size = model.coordinates.len();
     let mut matrix = vec![vec![0.0; size]; size];
     for (c, coordinate) in model.coordinates.iter().enumerate() {
-        // What has no mass of its own is moved by others.
+        // A coordinate without a mass is moved by others.
         matrix[c][c] = match coordinate.kind {
             CoordinateKind::Mass(inertia) => value(scratch, trial, inertia).filter(|mass| *mass > 0.0)?,
             _ => f64::MIN_POSITIVE,
@@ -61,7 +61,7 @@ fn value(scratch: &Scratch, trial: u64, e: Expr) -> Option<f64> {
     decided.then(|| scratch.graph.evaluate(e, &|symbol| known(symbol).unwrap_or_default()))
 }
 
-/// Whether a symmetric matrix is positive definite, by elimination.
+/// True if a symmetric matrix is positive definite, by elimination.
 fn is_positive(mut matrix: Vec<Vec<f64>>) -> bool {
     for pivot in 0..matrix.len() {
         if matrix[pivot][pivot] <= 0.0 {

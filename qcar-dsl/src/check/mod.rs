@@ -36,32 +36,32 @@ mod text;
 use slopes::{Slopes, slopes};
 pub use text::{Member, check_members, check_text, check_tokens};
 
-/// A model that has passed every rule. Every later stage takes one, and none of them fails.
+/// A model that has passed every rule. Later stages take one and cannot fail.
 #[derive(Clone, Debug)]
 pub struct Checked {
     model: Model,
     text: String,
-    /// Read from the text when it is first asked for, and shared by copies.
+    /// Its syntax tree, parsed on first use and shared by copies.
     tree: Arc<OnceLock<File>>,
     warnings: Report,
-    /// Known once it is derived.
+    /// Undetermined parameters; unknown before the equations are derived.
     unseen: Option<Vec<Unseen>>,
 }
 
-/// Parameters that no measurement can tell from each other, or at all.
+/// Parameters that outputs determine only in combination, or not at all.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unseen {
     /// Their names.
     pub parameters: Vec<String>,
-    /// How many combinations of them the outputs see.
+    /// Number of combinations that the outputs determine.
     pub seen: usize,
 }
 
 impl Checked {
-    /// Takes a model on trust.
+    /// Accepts a model without checks.
     ///
-    /// For models that a program built and knows to be sound. Later stages do not panic on an unsound one, but what
-    /// they compute from it means nothing.
+    /// For models that a program built and knows to be valid. Later stages do not panic on an invalid one, but their
+    /// results are meaningless.
     pub fn trust(model: Model) -> Self {
         Checked {
             model,
@@ -72,7 +72,7 @@ impl Checked {
         }
     }
 
-    /// The model as a file of its own, options taken; empty for a model taken on trust.
+    /// The model as a separate file, with resolved options; empty for an unchecked model.
     pub fn text(&self) -> &str {
         &self.text
     }
@@ -86,7 +86,7 @@ impl Checked {
         }
     }
 
-    /// That file as a tree.
+    /// The syntax tree of that file.
     pub(crate) fn tree(&self) -> &File {
         let read = || {
             let source = Source {
@@ -98,25 +98,25 @@ impl Checked {
         self.tree.get_or_init(read)
     }
 
-    /// Parameters that no measurement can tell from each other, or at all; empty before that check
+    /// Parameters that outputs determine only in combination, or not at all; empty before that check
     /// ([`crate::derive::visible`]).
     pub fn unseen(&self) -> &[Unseen] {
         self.unseen.as_deref().unwrap_or_default()
     }
 
-    /// True where it is known what is unseen.
+    /// True if that check is done.
     pub(crate) fn is_looked_at(&self) -> bool {
         self.unseen.is_some()
     }
 
-    /// The same model with what is unseen, and warnings of it.
+    /// The same model with these parameters, and warnings about them.
     pub(crate) fn with_unseen(mut self, unseen: Vec<Unseen>, warnings: Vec<Diagnostic>) -> Self {
         self.unseen = Some(unseen);
         self.warnings.add(warnings);
         self
     }
 
-    /// What is likely not meant, though it compiles.
+    /// Warnings: text that compiles but is probably a mistake.
     pub fn warnings(&self) -> &Report {
         &self.warnings
     }
@@ -135,10 +135,10 @@ impl Deref for Checked {
     }
 }
 
-/// Holds a model against every rule. Warnings come with the checked model; an error refuses it.
+/// Checks a model against every rule. Warnings are part of the checked model; an error refuses it.
 ///
 /// # Errors
-/// Every mistake that is found.
+/// Fails with every mistake.
 pub fn check(model: Model) -> Result<(Checked, Vec<Diagnostic>), Vec<Diagnostic>> {
     let scratch = Scratch::new(&model);
     let mut found = something_is_seen(&model);
@@ -162,7 +162,7 @@ fn refuses(found: &[Diagnostic]) -> bool {
     found.iter().any(|diagnostic| diagnostic.severity == Severity::Error)
 }
 
-/// A model shows something, and something moves it.
+/// Checks that a model has outputs, and an input that moves it.
 fn something_is_seen(model: &Model) -> Vec<Diagnostic> {
     let prescribed = |kind: &CoordinateKind| matches!(kind, CoordinateKind::Road | CoordinateKind::Motion);
     if model.outputs.is_empty() && model.channels.is_empty() {
@@ -174,7 +174,7 @@ fn something_is_seen(model: &Model) -> Vec<Diagnostic> {
     }
 }
 
-/// Every road and motion moves something.
+/// Checks that every road and motion moves something.
 fn motions_are_used(model: &Model) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for (index, coordinate) in model.coordinates.iter().enumerate() {
@@ -190,7 +190,7 @@ fn motions_are_used(model: &Model) -> Vec<Diagnostic> {
     found
 }
 
-/// Every gravity pulls a mass.
+/// Checks that every gravity acts on a mass.
 fn gravities_pull(model: &Model) -> Vec<Diagnostic> {
     let idle = model.gravities.iter().filter(|gravity| {
         let pulled = |c: &&crate::model::Coordinate| c.direction == gravity.direction && !c.angle;
@@ -204,7 +204,7 @@ fn gravities_pull(model: &Model) -> Vec<Diagnostic> {
         .collect()
 }
 
-/// Every force input has a point, or a law that uses it.
+/// Checks that every force input acts on a point, or is used by a law.
 fn forces_are_used(model: &Model) -> Vec<Diagnostic> {
     let laws = model.links.iter().flat_map(|link| link.law.force_inputs(&model.graph));
     let used: Vec<u16> = laws.collect();
@@ -214,12 +214,12 @@ fn forces_are_used(model: &Model) -> Vec<Diagnostic> {
         .collect()
 }
 
-/// A model with what the rules derive from it.
+/// A model with derived data for the rules.
 struct Scratch<'a> {
     model: &'a Model,
     /// The model's graph, with the derivatives added.
     graph: Graph,
-    /// Of each link.
+    /// Slopes of the law of each link.
     slopes: Vec<Slopes>,
 }
 

@@ -1,4 +1,4 @@
-//! Massless nodes: their balance of forces is solved for their position or velocity, so it must be solvable.
+//! Massless nodes: their force balance is solved for their position or velocity, so it must be solvable.
 
 use super::Scratch;
 use super::rank::{null_space, support};
@@ -7,7 +7,7 @@ use crate::diagnostic::{Diagnostic, structure};
 use crate::expr::{CoordinateId, Expr, Symbol};
 use crate::model::{CoordinateKind, Link};
 
-/// What the balance of a node is solved for.
+/// Unknown of the force balance of a node.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Balance {
     /// Its acceleration: an inerter holds it.
@@ -18,10 +18,10 @@ pub enum Balance {
     Position,
 }
 
-/// Nodes that move as one.
+/// Nodes that move together.
 type Group = Vec<CoordinateId>;
 
-/// Every node can be solved for.
+/// Checks that the balance of every node is solvable.
 pub fn nodes_are_solvable(scratch: &Scratch) -> Vec<Diagnostic> {
     let nodes = nodes(scratch);
     let of_one: Vec<Diagnostic> = nodes
@@ -35,7 +35,7 @@ pub fn nodes_are_solvable(scratch: &Scratch) -> Vec<Diagnostic> {
     }
 }
 
-/// What is wrong with the balance of one node.
+/// Fault of the balance of one node.
 fn mistake(scratch: &Scratch, id: CoordinateId, balance: Option<Balance>) -> Option<Diagnostic> {
     let coordinate = &scratch.model.coordinates[usize::from(id.0)];
     let (span, name) = (coordinate.declared.span, coordinate.name.as_str());
@@ -47,8 +47,8 @@ fn mistake(scratch: &Scratch, id: CoordinateId, balance: Option<Balance>) -> Opt
     Some(structure::node_nonlinear(span, name, place, what))
 }
 
-/// What is wrong with the balances of several nodes. Dampers do not resist the common motion of the nodes that they
-/// join; springs then place the group, as they place single nodes.
+/// Faults of the balances of several nodes. Dampers do not resist the common motion of the nodes between them; springs
+/// then determine the position of the group, as of single nodes.
 fn together(scratch: &Scratch, nodes: &[(CoordinateId, Option<Balance>)]) -> Vec<Diagnostic> {
     let single = |balance: Balance| -> Vec<Group> {
         let own = nodes.iter().filter(|(_, own)| *own == Some(balance));
@@ -79,7 +79,7 @@ pub fn nodes(scratch: &Scratch) -> Vec<(CoordinateId, Option<Balance>)> {
     ids.filter(is_node).map(|id| (id, balance(scratch, id))).collect()
 }
 
-/// The first of inerter, damper and spring that holds a node decides.
+/// Determined by the first of inerter, damper and spring at the node.
 fn balance(scratch: &Scratch, id: CoordinateId) -> Option<Balance> {
     let all = [Balance::Acceleration, Balance::Velocity, Balance::Position];
     let held = |balance: &Balance| {
@@ -102,7 +102,7 @@ fn slope(scratch: &Scratch, link: usize, balance: Balance) -> Expr {
     }
 }
 
-/// A law at a node whose slope depends on what the balance is solved for.
+/// A law at a node whose slope depends on the unknown of the balance.
 fn nonlinear<'a>(scratch: &'a Scratch, id: CoordinateId, balance: Balance) -> Option<(&'a Link, &'static str)> {
     let depends = |(index, link): (usize, &'a Link)| {
         let symbols = scratch.graph.symbols([slope(scratch, index, balance)]);
@@ -116,8 +116,8 @@ fn nonlinear<'a>(scratch: &'a Scratch, id: CoordinateId, balance: Balance) -> Op
     links_of(scratch, id).find_map(depends)
 }
 
-/// The groups of damped nodes whose common motion no damper resists. `None` where dampers leave another motion free,
-/// such as that of a lever.
+/// Groups of damped nodes whose common motion no damper resists. `None` if dampers leave another motion free, such as
+/// that of a lever.
 fn common_motions(scratch: &Scratch, damped: &[Group]) -> Option<Vec<Group>> {
     let motions = unresisted(scratch, damped, Balance::Velocity);
     let moves = |entry: f64| entry.abs() > 1e-6;
@@ -136,7 +136,7 @@ fn common_motions(scratch: &Scratch, damped: &[Group]) -> Option<Vec<Group>> {
     (motions.iter().all(is_common) && apart).then_some(groups)
 }
 
-/// Groups that move together without any force of the kind that is to place them.
+/// Groups that move together without any force of the kind that determines their position.
 fn floating(scratch: &Scratch, groups: &[Group], balance: Balance) -> Option<Diagnostic> {
     let loose = support(&unresisted(scratch, groups, balance));
     let named = loose.iter().flat_map(|&column| &groups[column]);
@@ -150,7 +150,7 @@ fn floating(scratch: &Scratch, groups: &[Group], balance: Balance) -> Option<Dia
     (!named.is_empty()).then(|| structure::nodes_float(&named, what))
 }
 
-/// The motions of groups that stretch no link of a kind: a vector for each, with an entry for each group.
+/// Motions of groups that stretch no link of a kind: vectors with an entry for each group.
 fn unresisted(scratch: &Scratch, groups: &[Group], balance: Balance) -> Vec<Vec<f64>> {
     let point = Point::new(scratch.model, Kind::Plain, 1);
     let leaf = |symbol| point.leaf(symbol);

@@ -1,5 +1,5 @@
-//! Passivity: a damper may only dissipate energy, never supply it. An inerter may be negative as far as the masses around it
-//! outweigh it.
+//! Passivity: a damper may only dissipate energy. An inerter may be negative as long as the masses at its ends outweigh
+//! it.
 
 use super::Scratch;
 use super::extremes::extreme;
@@ -10,18 +10,18 @@ use crate::diagnostic::{Diagnostic, structure};
 use crate::expr::{Expr, LinkId, Symbol};
 use crate::model::{Link, Term};
 
-/// How many points of a nonlinear law are tried.
+/// Number of points of a nonlinear law that are tried.
 pub(super) const TRIALS: u64 = 64;
 
-/// Travel, m or rad, and speed, m/s or rad/s, that a suspension sees.
+/// Largest travel, m or rad, and speed, m/s or rad/s, of a suspension.
 pub(super) const TRAVEL: f64 = 0.1;
 pub(super) const SPEED: f64 = 2.0;
 
 /// Angular frequencies of small vibrations, rad/s, from those of a car's body to those of sound.
 const FREQUENCIES: [f64; 6] = [0.1, 1.0, 10.0, 1e2, 1e3, 1e4];
 
-/// No damper and no inerter is negative anywhere in the declared ranges, and no law pushes along with the motion while the
-/// force inputs are zero; but for links that the text calls active.
+/// Checks that no damper and no inerter is negative in the declared ranges, and that no law pushes in the direction of
+/// the motion without force inputs; links that are declared active are exempt.
 pub fn links_are_passive(scratch: &Scratch) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     let links = scratch.model.links.iter().enumerate();
@@ -55,7 +55,7 @@ fn negative(scratch: &Scratch, link: &Link, coefficient: Expr, what: &str) -> Op
     (lowest.value < 0.0).then(|| structure::negative_damping(link.declared.span, &link.name, what, lowest.value, &at))
 }
 
-/// A law without inner states that a faster motion helps on.
+/// A law without inner states that supports a faster motion.
 fn pushes_along(scratch: &Scratch, link: &Link, id: LinkId) -> Option<Diagnostic> {
     let has_law = link.law.terms.iter().any(|term| matches!(term, Term::Force(_)));
     if !has_law {
@@ -71,8 +71,8 @@ fn pushes_along(scratch: &Scratch, link: &Link, id: LinkId) -> Option<Diagnostic
     })
 }
 
-/// A law with inner states that gives energy to vibrations about rest. At any one moment, what is stored cannot be told
-/// from what is given; over a cycle it is the imaginary part of the dynamic stiffness that takes.
+/// A law with inner states that supplies energy to vibrations about rest. At one instant, stored and supplied energy
+/// cannot be separated; over a cycle, the imaginary part of the dynamic stiffness gives the dissipation.
 fn feeds_vibrations(scratch: &Scratch, link: &Link, id: LinkId) -> Option<Diagnostic> {
     let slopes = &scratch.slopes[usize::from(id.0)];
     let laws: Vec<Expr> = slopes.all();
@@ -97,7 +97,7 @@ pub(super) fn centred(seed: u64, tag: u64) -> f64 {
     2.0 * uniform(seed, tag) - 1.0
 }
 
-/// The force of a link at a point, while all others rest; `None` where a parameter has neither range nor default.
+/// The force of a link at a point, with all others at rest; `None` if a parameter has neither range nor default.
 fn force_at(scratch: &Scratch, id: LinkId, trial: u64, s: f64, v: f64) -> Option<f64> {
     let force = scratch.slopes[usize::from(id.0)].force;
     let parameters = drawn(scratch, &[force], trial)?;
@@ -110,8 +110,8 @@ fn force_at(scratch: &Scratch, id: LinkId, trial: u64, s: f64, v: f64) -> Option
     Some(scratch.graph.evaluate(force, &leaf))
 }
 
-/// Values within their ranges for the parameters of some expressions, and `None` for all else; `None` altogether where
-/// a parameter has neither range nor default.
+/// Values within their ranges for the parameters of some expressions, and `None` for all other leaves; `None`
+/// altogether if a parameter has neither range nor default.
 pub(super) fn drawn<'a>(
     scratch: &'a Scratch,
     of: &[Expr],

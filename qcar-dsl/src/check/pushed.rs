@@ -1,5 +1,5 @@
-//! Force inputs on massless nodes: a node that only springs hold follows a force at once, and its velocity the rate of the
-//! force, which is no input.
+//! Force inputs on massless nodes: a node between springs follows a force immediately, and its velocity depends on the
+//! rate of the force, which is no input.
 
 use std::collections::BTreeMap;
 
@@ -9,10 +9,10 @@ use crate::diagnostic::{Diagnostic, structure};
 use crate::expr::{CoordinateId, LinkId, Symbol};
 use crate::model::{Link, Quantity, Signal};
 
-/// A force input for each node that it pushes, by its place in `Model::forces`.
+/// A force input for each node on which it acts, by its position in `Model::forces`.
 type Pushed = BTreeMap<CoordinateId, u16>;
 
-/// No motion is asked for that would need the rate of a force input.
+/// Checks that no motion is needed that depends on the rate of a force input.
 pub fn rates_of_forces_are_not_needed(scratch: &Scratch) -> Vec<Diagnostic> {
     let model = scratch.model;
     let balances: BTreeMap<CoordinateId, Option<Balance>> = nodes(scratch).into_iter().collect();
@@ -38,7 +38,7 @@ pub fn rates_of_forces_are_not_needed(scratch: &Scratch) -> Vec<Diagnostic> {
     pushed(scratch, massless).iter().filter_map(mistake).collect()
 }
 
-/// What force inputs push, by themselves, through a law, or through links between massless nodes.
+/// Nodes on which force inputs act directly, through a law, or through links between massless nodes.
 fn pushed(scratch: &Scratch, massless: impl Fn(&CoordinateId) -> bool) -> Pushed {
     let model = scratch.model;
     let mut pushed = Pushed::new();
@@ -70,7 +70,7 @@ fn ends(link: &Link) -> impl Iterator<Item = CoordinateId> {
     link.stretch.iter().map(|(c, _)| *c)
 }
 
-/// An output shows the velocity, or a state of a law grows with it.
+/// True if an output is the velocity, or if a state of a law depends on it.
 fn needs_velocity(scratch: &Scratch, node: CoordinateId) -> bool {
     let links = (0..).map(LinkId).zip(&scratch.model.links);
     let mut held = links.filter(|(_, link)| ends(link).any(|end| end == node));

@@ -1,9 +1,10 @@
 //! Ranks and null spaces of small dense matrices, by elimination with full pivoting.
 
-/// Pivots below this part of the largest entry count as zero.
+/// Pivots below this share of the largest entry count as zero.
 const NEGLIGIBLE: f64 = 1e-9;
 
-/// A basis of the null space of a matrix, given by its rows. Each vector has the entry 1 at a column of its own.
+/// A basis of the null space of a matrix, given by its rows. Each vector has the entry 1 in a column where the others
+/// are zero.
 pub fn null_space(rows: Vec<Vec<f64>>, columns: usize) -> Vec<Vec<f64>> {
     let largest = rows
         .iter()
@@ -12,7 +13,7 @@ pub fn null_space(rows: Vec<Vec<f64>>, columns: usize) -> Vec<Vec<f64>> {
     null_space_of_scale(rows, columns, largest)
 }
 
-/// The same for a matrix whose entries are small against a scale that the caller knows.
+/// The same for a matrix with small entries, relative to a given scale.
 pub fn null_space_of_scale(mut rows: Vec<Vec<f64>>, columns: usize, largest: f64) -> Vec<Vec<f64>> {
     let mut free: Vec<usize> = (0..columns).collect();
     let mut bound = Vec::new();
@@ -41,13 +42,13 @@ fn largest_of(row: &[f64], columns: &[usize]) -> Option<usize> {
     columns.max_by(|&a, &b| row[a].abs().total_cmp(&row[b].abs()))
 }
 
-/// The largest entry of the rows from a place on, each of which knows where it is largest.
+/// The largest entry of the rows from a position on; the column of the largest entry of each row is known.
 fn pivot(rows: &[Vec<f64>], foremost: &[Option<usize>], from: usize) -> Option<(usize, usize)> {
     let left = (from..rows.len()).filter_map(|row| Some((row, foremost[row]?)));
     left.max_by(|a, b| rows[a.0][a.1].abs().total_cmp(&rows[b.0][b.1].abs()))
 }
 
-/// Makes a column zero in the rows below that of its pivot; gives the rows that have changed.
+/// Eliminates a column in the rows below its pivot; returns the changed rows.
 fn eliminate(rows: &mut [Vec<f64>], at: usize, column: usize) -> Vec<usize> {
     let (above, below) = rows.split_at_mut(at + 1);
     let pivot_row = &above[at];
@@ -64,7 +65,7 @@ fn eliminate(rows: &mut [Vec<f64>], at: usize, column: usize) -> Vec<usize> {
     changed
 }
 
-/// The change with the entry 1 at a free column that all rows leave, from the last pivot back to the first.
+/// The null vector with the entry 1 at a free column, by back substitution.
 fn null_vector(rows: &[Vec<f64>], bound: &[usize], column: usize, columns: usize) -> Vec<f64> {
     let mut vector = vec![0.0; columns];
     vector[column] = 1.0;
@@ -76,7 +77,7 @@ fn null_vector(rows: &[Vec<f64>], bound: &[usize], column: usize, columns: usize
     vector
 }
 
-/// The columns in which vectors have an entry worth speaking of.
+/// The columns in which vectors have significant entries.
 pub fn support(vectors: &[Vec<f64>]) -> Vec<usize> {
     let size = vectors.first().map_or(0, Vec::len);
     let speaks = |column: &usize| vectors.iter().any(|vector| vector[*column].abs() > 1e-6);

@@ -1,5 +1,5 @@
-//! Generic values for the leaves of expressions. A property of the structure, such as a rank, shows at almost every
-//! point, so a few pseudo-random points decide it, and the same ones every time keep the compiler deterministic.
+//! Generic values for the leaves of expressions. A structural property, such as a rank, holds at almost every point, so
+//! a few pseudo-random points decide it. The points are always the same, which keeps the compiler deterministic.
 
 use std::cell::RefCell;
 
@@ -7,10 +7,10 @@ use crate::expr::{Expr, Graph, Node, Symbol};
 use crate::hash::HashMap;
 use crate::model::{Default, Model, Parameter};
 
-/// Where values come from.
+/// Range of the values.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Kind {
-    /// Numbers near 1, whatever they stand for: the best conditioned.
+    /// Numbers near 1, for the best conditioning.
     Plain,
     /// Parameters within their declared ranges or at their defaults, motions of millimetres.
     Declared,
@@ -23,12 +23,12 @@ pub struct Point<'a> {
     /// Where the values come from.
     pub kind: Kind,
     seed: u64,
-    /// The seed of all that is no parameter, so that one parameter set can be seen in several motions.
+    /// Seed of all leaves that are no parameters, so that a parameter set can be tested in several motions.
     motion: u64,
 }
 
 impl<'a> Point<'a> {
-    /// One of endlessly many points.
+    /// A point by its number.
     pub fn new(model: &'a Model, kind: Kind, seed: u64) -> Point<'a> {
         Point {
             model,
@@ -38,7 +38,7 @@ impl<'a> Point<'a> {
         }
     }
 
-    /// The same parameters in another motion, of which every parameter set has its own.
+    /// The same parameters in another motion, specific to the parameter set.
     pub fn moved(self, motion: u64) -> Point<'a> {
         Point {
             motion: (self.seed << 8) + motion,
@@ -59,7 +59,7 @@ impl<'a> Point<'a> {
 
     fn parameter(&self, index: u16) -> f64 {
         let parameter = &self.model.parameters[usize::from(index)];
-        // Time goes on from motion to motion.
+        // Time advances from motion to motion.
         let seed = if parameter.clock { self.motion } else { self.seed };
         let chance = uniform(seed, tag(Symbol::Parameter(index)));
         match (self.kind, parameter.range, parameter.default) {
@@ -72,7 +72,7 @@ impl<'a> Point<'a> {
     }
 }
 
-/// The bounds that a declaration gives to a parameter; its default alone where it has no range.
+/// The bounds of a parameter in its declaration; its default alone if it has no range.
 pub fn bounds(model: &Model, parameter: &Parameter) -> Option<(f64, f64)> {
     match (parameter.range, parameter.default) {
         (Some(range), _) => Some(range),
@@ -125,7 +125,7 @@ impl<'a> Values<'a> {
     }
 }
 
-/// A number for a leaf, so that equal leaves have equal chances.
+/// A hash of a leaf, so that equal leaves have equal values.
 pub fn tag(symbol: Symbol) -> u64 {
     let (kind, first, second) = match symbol {
         Symbol::Parameter(index) => (1, index, 0),

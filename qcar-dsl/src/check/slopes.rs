@@ -1,12 +1,12 @@
-//! The slopes of the laws: how the force of each link grows with its stretch, its rate and its inner states.
+//! Slopes of laws: derivatives of the force of each link by its stretch, its rate and its inner states.
 
 use super::sample::{Values, tag, uniform};
 use crate::expr::{Differential, Expr, Graph, LinkId, Substitution, Symbol};
 use crate::model::{Model, Term};
 
-/// A law in its own terms.
+/// A law as a function of its own arguments.
 pub struct Slopes {
-    /// The force but for what inerters add.
+    /// The force without inerters.
     pub force: Expr,
     /// ∂force/∂s
     pub stiffness: Expr,
@@ -16,11 +16,11 @@ pub struct Slopes {
     pub inertance: Expr,
     /// The inner states.
     pub inner: Vec<InnerSlopes>,
-    /// ∂force/∂s of the other links whose stretch or rate the law uses.
+    /// ∂force/∂s of the other links in the law.
     pub others: Vec<(LinkId, Expr)>,
     /// The force at rest: a preload.
     pub rest: Expr,
-    /// Neither the force nor a rate is linear in the motion.
+    /// True if the force or a rate is nonlinear in the motion.
     pub nonlinear: bool,
 }
 
@@ -95,7 +95,7 @@ fn of_link(model: &Model, g: &mut Graph, id: LinkId) -> Slopes {
     slopes
 }
 
-/// An expression with nothing moved.
+/// An expression at rest.
 fn at_rest(g: &mut Graph, e: Expr) -> Expr {
     let zero = g.constant(0.0);
     let moves = g
@@ -105,7 +105,7 @@ fn at_rest(g: &mut Graph, e: Expr) -> Expr {
     Substitution::new(moves.map(|leaf| (leaf, zero)).collect()).apply(g, e)
 }
 
-/// Twice the motion does not give twice the change, or the opposite motion not the opposite one.
+/// True if twice the motion does not give twice the change, or the opposite motion not the opposite change.
 fn is_nonlinear(g: &mut Graph, e: Expr) -> bool {
     let rest = at_rest(g, e);
     let change = g.of(e - rest);
@@ -116,7 +116,7 @@ fn is_nonlinear(g: &mut Graph, e: Expr) -> bool {
         };
         Values::new(g, &leaf).of(change)
     };
-    // Small motions too: a stop may be out of reach of none, or of all, of the large ones.
+    // Includes small motions: all large ones, or none, may reach a stop.
     let sizes = [1.0, 0.1, 0.01, 0.001];
     let mut points = sizes.into_iter().flat_map(|size| (1..=4).map(move |seed| (seed, size)));
     points.any(|(seed, size)| {
@@ -126,7 +126,7 @@ fn is_nonlinear(g: &mut Graph, e: Expr) -> bool {
     })
 }
 
-/// The force of terms but for what inerters add, and the sum of the inerters.
+/// The force of terms without inerters, and the sum of the inerters.
 pub fn summed(terms: &[Term], g: &mut Graph, id: LinkId) -> (Expr, Expr) {
     let (s, v) = (g.symbol(Symbol::Stretch(id)), g.symbol(Symbol::Rate(id)));
     let (mut force, mut inertance) = (g.constant(0.0), g.constant(0.0));

@@ -2,8 +2,8 @@
 
 use num_complex::Complex64;
 
-/// Solves `matrix x = column` for several columns, by elimination with partial pivoting, past the zeros. A singular matrix
-/// gives numbers that are not finite.
+/// Solves `matrix x = column` for several columns, by elimination with partial pivoting that skips zeros. A singular
+/// matrix gives values that are not finite.
 pub fn solve(mut matrix: Vec<Vec<Complex64>>, mut columns: Vec<Vec<Complex64>>) -> Vec<Vec<Complex64>> {
     let size = matrix.len();
     for at in 0..size {
@@ -36,7 +36,7 @@ pub fn solve(mut matrix: Vec<Vec<Complex64>>, mut columns: Vec<Vec<Complex64>>) 
     columns
 }
 
-/// How large a pivot is, without the root of its norm, as LAPACK measures it.
+/// Size of a pivot without a square root, as in LAPACK.
 fn magnitude(x: Complex64) -> f64 {
     x.re.abs() + x.im.abs()
 }
@@ -45,7 +45,7 @@ fn is_zero(x: Complex64) -> bool {
     x.re == 0.0 && x.im == 0.0
 }
 
-/// The entries of a row from a place on that are not zero.
+/// The nonzero entries of a row from a position on.
 fn nonzeros(row: &[Complex64], from: usize) -> Vec<(usize, Complex64)> {
     let entries = row.iter().copied().enumerate().skip(from);
     entries.filter(|&(_, entry)| !is_zero(entry)).collect()

@@ -15,7 +15,7 @@ use crate::source::{Load, Source, Span};
 /// Reads, resolves and checks a model file. A family is checked as the member that its defaults choose.
 ///
 /// # Errors
-/// The report of every mistake that is found, with the texts that were read.
+/// Fails with the report of every mistake and the texts that were read.
 pub fn check_text(source: Source, load: Load) -> Result<Checked, Report> {
     let mut front = Front::new(source, load);
     let file = front.file();
@@ -26,7 +26,7 @@ pub fn check_text(source: Source, load: Load) -> Result<Checked, Report> {
 /// Reads, resolves and checks the tokens of an inline macro.
 ///
 /// # Errors
-/// One `compile_error!` for each mistake, where the compiler draws its caret at the mistaken token.
+/// Fails with one `compile_error!` for each mistake, at the mistaken token.
 pub fn check_tokens(tokens: TokenStream, load: Load) -> Result<Checked, TokenStream> {
     let source = Source {
         name: "axle!".to_string(),
@@ -40,13 +40,13 @@ pub fn check_tokens(tokens: TokenStream, load: Load) -> Result<Checked, TokenStr
     front.finish(checked).map_err(|report| compile_errors(&report, &places))
 }
 
-/// One member of a family: its options, and what its check gave.
+/// A member of a family: its options, and the result of its check.
 pub type Member = (Choices, Result<Checked, Report>);
 
 /// Checks every valid member of a family, in the order in which its options list their values.
 ///
 /// # Errors
-/// The report of a file that is no family, or cannot be read; a refused member has a report of its own.
+/// Fails if the file is no family or cannot be read; a refused member has its own report.
 pub fn check_members(source: Source, load: Load) -> Result<Vec<Member>, Report> {
     let mut front = Front::new(source, load);
     let file = front.file();
@@ -67,11 +67,11 @@ pub fn check_members(source: Source, load: Load) -> Result<Vec<Member>, Report> 
     Ok(members(family).into_iter().map(one).collect())
 }
 
-/// The front end under way.
+/// State of the front end.
 struct Front<'a> {
     sources: Vec<Source>,
     found: Vec<Diagnostic>,
-    /// A text could not be read in full.
+    /// True if a text could not be read completely.
     partial: bool,
     load: Load<'a>,
 }
@@ -86,7 +86,7 @@ impl<'a> Front<'a> {
         }
     }
 
-    /// Keeps what was found. Of a text that could not be read in full, what is missing in it says nothing.
+    /// Stores diagnostics. If a text could not be read completely, diagnostics about missing parts are ignored.
     fn note(&mut self, found: impl IntoIterator<Item = Diagnostic>) {
         let partial = self.partial;
         self.found.extend(
@@ -168,8 +168,8 @@ impl<'a> Front<'a> {
         }
     }
 
-    /// Takes the options, resolves and checks. No stage begins where an earlier one has refused the model, but units are
-    /// looked at in what could be read of a text.
+    /// Resolves options and names, and checks. No stage begins if an earlier one has refused the model, except that
+    /// units are checked in the readable part of a text.
     fn member(&mut self, axle: &Axle, family: Option<&Axle>, elements: &[&Element]) -> Option<Checked> {
         let mut found = vec![];
         let member = select(axle, family, &mut found);
@@ -204,7 +204,7 @@ impl<'a> Front<'a> {
         }
     }
 
-    /// Everything that was found, once and in the order of the texts.
+    /// All diagnostics without duplicates, in the order of the texts.
     fn report(self) -> Report {
         let mut report = Report {
             sources: self.sources,
@@ -230,7 +230,7 @@ fn as_element(item: &Item) -> Option<&Element> {
     }
 }
 
-/// The mistakes of an inline macro at the compiler's own places.
+/// The mistakes of an inline macro at the positions of the Rust compiler.
 fn compile_errors(report: &Report, places: &[proc_macro2::Span]) -> TokenStream {
     let errors = report
         .diagnostics

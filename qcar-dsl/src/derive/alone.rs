@@ -1,16 +1,16 @@
-//! A link alone: on a dynamometer, which moves one of its ends and holds the other.
+//! A single link on a dynamometer, which moves one of its ends and holds the other.
 
 use crate::check::Checked;
 use crate::expr::{CoordinateId, LinkId};
 use crate::model::{Coordinate, CoordinateKind, Law, Link, Output, Signal};
 use crate::units::Unit;
 
-/// What the dynamometer moves.
+/// Name of the prescribed motion.
 const ROD: &str = "rod";
 
-/// A model of one link of another, with the same parameters in the same order: its stretch is the motion `rod`, its force the one output.
-/// All other links are empty, and nothing else moves. `None` where the model has no such link, or where its law cannot stand alone:
-/// it uses other links or force inputs, or it turns.
+/// A model of a single link of another model, with the same parameters in the same order: its stretch is the motion
+/// `rod`, its force the only output. All other links are empty, and nothing else moves. `None` if the model lacks the
+/// link, or if its law uses other links or force inputs, or if it is rotational.
 pub fn alone(model: &Checked, axis: &str, name: &str) -> Option<Checked> {
     let is_it = |link: &Link| link.name == name && link.direction.0 == axis;
     let place = model.links.iter().position(is_it)?;
@@ -47,6 +47,6 @@ pub fn alone(model: &Checked, axis: &str, name: &str) -> Option<Checked> {
         declared: link.declared.clone(),
     }];
     (own.points, own.forces, own.gravities, own.channels) = Default::default();
-    // What a parameter does is seen in the whole model.
+    // Whether parameters are determined is checked for the whole model.
     Some(Checked::trust(own).with_unseen(Vec::new(), Vec::new()))
 }

@@ -1,5 +1,5 @@
-//! Sums of products with common factors taken out, as an engineer writes a lever: `(a - b) + r (b - c)`, not
-//! `a + (r - 1) b - r c`. What links have in common is then one expression.
+//! Sums of products with common factors taken out, as usual for a lever: `(a - b) + r (b - c)`, not `a + (r - 1) b - r
+//! c`. Common parts of links are then one expression.
 
 use crate::derive::elimination::Scalar;
 use crate::expr::{Expr, Graph, Node};

@@ -1,4 +1,4 @@
-//! Complex numbers as pairs of real expressions: what is structurally zero costs nothing.
+//! Complex numbers as pairs of real expressions; structural zeros cost nothing.
 
 use crate::derive::elimination::Scalar;
 use crate::expr::{Differential, Expr, Graph};
@@ -76,7 +76,7 @@ impl Scalar for Complex {
         }
     }
 
-    /// By the reciprocal, which all that is divided by the same number shares.
+    /// Multiplies by the reciprocal, which all quotients with this divisor share.
     fn div(self, g: &mut Graph, other: Self) -> Self {
         let square = g.of(other.re * other.re + other.im * other.im);
         let (re, im) = (g.of(other.re / square), g.of(other.im / square));

@@ -1,4 +1,4 @@
-//! Stages to [`About`] and [`Vectors`]: what stands at each place, and its name.
+//! Description of a model for [`About`] and [`Vectors`]: the meaning and name of each entry.
 
 use std::borrow::Cow;
 
@@ -16,7 +16,7 @@ use crate::expr::{CoordinateId, Expr, LinkId, Symbol};
 use crate::model::{self, Coordinate, CoordinateKind, Direction, Quantity, Term};
 use crate::units::Unit;
 
-/// What stands in the vectors of a model.
+/// The meaning of each entry of the vectors.
 pub fn vectors(model: &Checked, motion: &Motion) -> Vectors {
     let component = |&symbol: &Symbol| {
         let unit = unit_of(model, symbol)?;
@@ -29,7 +29,7 @@ pub fn vectors(model: &Checked, motion: &Motion) -> Vectors {
     }
 }
 
-/// Describes a model whose stages are done.
+/// Describes a compiled model.
 pub fn describe(
     model: &Checked,
     vectors: &Vectors,
@@ -76,7 +76,7 @@ fn coordinate(model: &Checked, c: CoordinateId) -> &Coordinate {
     &model.coordinates[c.0 as usize]
 }
 
-/// The unit of a coordinate's position (m, or rad, which is 1), divided by s as often as `rates` says.
+/// Unit of a coordinate's position (m, or rad, which is 1), divided by s `rates` times.
 fn unit(coordinate: &Coordinate, rates: i16) -> Unit {
     Unit {
         sixths: [0, if coordinate.angle { 0 } else { 6 }, -6 * rates],
@@ -105,7 +105,7 @@ fn motion_name(c: &Coordinate, quantity: Quantity) -> String {
     format!("{rate}{}_{}", c.direction.0, c.name)
 }
 
-/// The motion of a coordinate that a symbol is.
+/// The motion of a coordinate that a symbol represents.
 fn moving(symbol: Symbol) -> Option<(CoordinateId, Quantity)> {
     match symbol {
         Symbol::Position(c) => Some((c, Quantity::Position)),
@@ -115,7 +115,7 @@ fn moving(symbol: Symbol) -> Option<(CoordinateId, Quantity)> {
     }
 }
 
-/// The unit of what can stand in a vector.
+/// Unit of an entry of a vector.
 fn unit_of(model: &Checked, symbol: Symbol) -> Option<Unit> {
     Some(match symbol {
         Symbol::Inner(LinkId(l), i) => model.links[l as usize].law.inner[i as usize].unit,
@@ -296,7 +296,7 @@ fn mass(model: &Checked, c: &Coordinate) -> Option<Mass> {
     })
 }
 
-/// The places of the parameters on which expressions depend.
+/// Positions of the parameters on which expressions depend.
 fn parameters_of(model: &Checked, of: impl IntoIterator<Item = Expr>) -> Cow<'static, [u16]> {
     let place = |symbol| match symbol {
         Symbol::Parameter(place) => Some(place),

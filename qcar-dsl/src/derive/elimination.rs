@@ -1,8 +1,8 @@
 //! Sparse symmetric systems solved symbolically: L D Lᵀ at compile time, over real or complex expressions.
 //!
-//! The unknown with the fewest neighbours goes first, so that chains and trees of masses eliminate without fill; of
-//! several the last, since what is excited and seen most comes first in a model.
-//! Zeros are structural: what is not there costs nothing.
+//! The unknown with the fewest neighbours is eliminated first, so that chains and trees of masses have no fill. Among
+//! several the last is taken, since the excited and measured ones usually come first in a model. Zeros are structural
+//! and cost nothing.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
@@ -79,7 +79,7 @@ impl<S: Scalar> Symmetric<S> {
         }
     }
 
-    /// Adds to an entry and to its mirror image.
+    /// Adds to an entry and to its transposed entry.
     pub fn add(&mut self, g: &mut Graph, i: usize, j: usize, value: S) {
         let place = (i.min(j), i.max(j));
         let sum = match self.entries.remove(&place) {
@@ -91,7 +91,7 @@ impl<S: Scalar> Symmetric<S> {
         }
     }
 
-    /// An entry, unless it is zero.
+    /// An entry; `None` if it is zero.
     pub fn get(&self, i: usize, j: usize) -> Option<S> {
         self.entries.get(&(i.min(j), i.max(j))).copied()
     }
@@ -192,7 +192,7 @@ impl<S: Scalar> Factors<S> {
         b
     }
 
-    /// The inverse, row by row from the last pivot up (Takahashi, Fagan and Chen, 1973): symmetric entries are one
+    /// The inverse, row by row from the last pivot up (Takahashi, Fagan and Chen, 1973). Symmetric entries share one
     /// expression.
     pub fn inverse(&self, g: &mut Graph) -> Vec<Vec<S>> {
         let zero = S::zero(g);
@@ -224,10 +224,10 @@ impl<S: Scalar> Step<S> {
     }
 }
 
-/// The unknowns that are still there, with those that they share an entry with.
+/// The remaining unknowns, each with those that share an entry with it.
 struct Left {
     neighbours: Vec<BTreeSet<usize>>,
-    /// By how many neighbours they have, of as many the last first.
+    /// By number of neighbours; among equal numbers, the last first.
     order: BTreeSet<(usize, Reverse<usize>)>,
 }
 
@@ -243,7 +243,7 @@ impl Left {
         left
     }
 
-    /// Takes the unknown with the fewest neighbours out, and gives these.
+    /// Removes the unknown with the fewest neighbours and returns these.
     fn take(&mut self) -> Option<(usize, BTreeSet<usize>)> {
         let (_, Reverse(unknown)) = self.order.pop_first()?;
         let neighbours = std::mem::take(&mut self.neighbours[unknown]);
@@ -253,7 +253,7 @@ impl Left {
         Some((unknown, neighbours))
     }
 
-    /// Two unknowns share an entry, or no longer do.
+    /// Adds or removes a common entry of two unknowns.
     fn join(&mut self, i: usize, j: usize, joined: bool) {
         for (one, other) in [(i, j), (j, i)].into_iter().filter(|_| i != j) {
             self.change(one, |of_one| {

@@ -1,4 +1,4 @@
-//! The force of a link in its own terms: stretch, rate and inner states.
+//! The force of a link as a function of stretch, rate and inner states.
 
 use crate::check::Checked;
 use crate::check::slopes::summed;
@@ -8,7 +8,7 @@ use crate::model::Term;
 /// The resisting force of a link as its law gives it, and its slopes.
 #[derive(Clone, Copy, Debug)]
 pub struct Law {
-    /// The force but for what the inerters add, in `Symbol::Stretch`, `Symbol::Rate` and `Symbol::Inner`.
+    /// The force without inerters, in `Symbol::Stretch`, `Symbol::Rate` and `Symbol::Inner`.
     pub force: Expr,
     /// ∂force/∂s
     pub stiffness: Expr,
@@ -18,12 +18,12 @@ pub struct Law {
     pub inertance: Expr,
 }
 
-/// The law of a link of a model that stands.
+/// The law of a link on the rig.
 pub fn standing(model: &Checked, g: &mut Graph, l: LinkId) -> Law {
     law(g, l, &model.links[l.0 as usize].law.terms)
 }
 
-/// The law of a tyre that rolls.
+/// The law of a rolling tyre.
 pub fn rolling(model: &Checked, g: &mut Graph, l: LinkId) -> Law {
     let link = &model.links[l.0 as usize];
     law(g, l, link.rolling.as_ref().unwrap_or(&link.law.terms))

@@ -1,7 +1,7 @@
 //! Equations to matrices and their parameter Jacobians.
 //!
 //! Derivatives follow the factored equations: the law of a link is differentiated once by its own arguments, and the
-//! chain rule carries that through the definitions, so that every entry shares what the links have in common.
+//! chain rule goes through the definitions, so that every entry shares the common parts of the links.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -15,14 +15,14 @@ use crate::expr::{Differential, Expr, Graph, LinkId, Symbol};
 /// equations.
 #[derive(Clone, Debug)]
 pub struct Linear {
-    /// True where A, B, C and D depend on the parameters alone, and each law on the stretch of its own link: the impedance of
-    /// the model is symmetric.
+    /// True if A, B, C and D depend on the parameters alone, and each law on the stretch of its own link: the impedance
+    /// of the model is then symmetric.
     pub linear: bool,
     /// A = ∂f/∂x, B = ∂f/∂u, C = ∂h/∂x and D = ∂h/∂u, matrix after matrix, row after row.
     pub matrices: Vec<(Entry, Expr)>,
-    /// Their derivatives by a parameter, parameter after parameter.
+    /// Their derivatives by the parameters, parameter by parameter.
     pub sensitivities: Vec<(Entry, u16, Expr)>,
-    /// ∂f/∂p and ∂h/∂p: is it an output, row, parameter; row after row.
+    /// ∂f/∂p and ∂h/∂p, row by row: true for an output, row, parameter.
     pub parameter_jacobian: Vec<(bool, u16, u16, Expr)>,
 }
 
@@ -77,7 +77,7 @@ fn is_coupled(model: &Checked) -> bool {
     links.any(|(id, link)| !link.law.other_links(&model.graph, id).is_empty())
 }
 
-/// For each leaf, the places of what depends on it.
+/// For each leaf, the positions of the expressions that depend on it.
 type Users = BTreeMap<Symbol, Vec<usize>>;
 
 fn users(graph: &Graph, values: &[Expr]) -> Users {
@@ -90,7 +90,7 @@ fn users(graph: &Graph, values: &[Expr]) -> Users {
     users
 }
 
-/// The definitions of the equations, through which a derivative goes on from each to those that use it.
+/// The definitions of the equations; a derivative propagates from each to those that use it.
 struct Chain<'a> {
     definitions: &'a [(Symbol, Expr)],
     users: Users,
@@ -148,7 +148,7 @@ fn chain(graph: &mut Graph, by: &Differential, slopes: &[(Symbol, Expr)]) -> Exp
     sum
 }
 
-/// Values whose derivatives are asked for.
+/// Values to be differentiated.
 struct Rows {
     values: Vec<Expr>,
     users: Users,
@@ -160,7 +160,7 @@ impl Rows {
         Rows { values, users }
     }
 
-    /// The derivatives that are not structurally zero, with their places.
+    /// The derivatives that are not structurally zero, with their positions.
     fn nonzeros(&self, graph: &mut Graph, by: &mut Differential) -> Vec<(usize, Expr)> {
         let users = by.leaves().filter_map(|leaf| self.users.get(&leaf));
         let changed: BTreeSet<usize> = users.flatten().copied().collect();

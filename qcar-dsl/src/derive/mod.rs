@@ -1,4 +1,4 @@
-//! Graph to equations, matrices and responses. All of it is total: a checked model has them.
+//! From the graph to equations, matrices and responses. No step can fail for a checked model.
 
 // The order of states, inputs and outputs.
 pub mod vectors;

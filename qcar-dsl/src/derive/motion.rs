@@ -1,10 +1,10 @@
-//! Graph to equations of motion.
+//! Equations of motion from the graph.
 //!
 //! The physics stays factored: the stretch, the rate and the force of each link are symbols with definitions, and
 //! forces are scattered to the coordinates by incidence. Nothing is multiplied out.
 //!
-//! Massless nodes are no stiff penalty masses. The balance of a node that a damper holds is solved for its velocity,
-//! and its position is a state; the balance of a node that only springs hold is solved for its position.
+//! Massless nodes are not replaced by small masses. If a damper acts on a node, its balance is solved for its velocity,
+//! and its position is a state; if only springs do, its balance is solved for its position.
 
 // Tyres that may roll.
 mod tyre;
@@ -26,14 +26,14 @@ pub use tyre::{RollingTyre, rolling_tyre};
 /// The equations of motion: definitions, then the rates of the states and the outputs in their terms.
 #[derive(Clone, Debug)]
 pub struct Motion {
-    /// How each coordinate gets its motion, in the order of the model.
+    /// Kind of motion of each coordinate, in the order of the model.
     pub roles: Vec<Role>,
-    /// Symbols that stand for expressions in the states, the inputs, the parameters and earlier definitions: stretch,
-    /// rate and force of each link, positions and velocities of massless nodes, accelerations.
+    /// Symbols for expressions in the states, the inputs, the parameters and earlier definitions: stretch, rate and
+    /// force of each link, positions and velocities of massless nodes, accelerations.
     pub definitions: Vec<(Symbol, Expr)>,
-    /// What stands at each place of `x`.
+    /// Symbol of each entry of `x`.
     pub states: Vec<Symbol>,
-    /// What stands at each place of `u`.
+    /// Symbol of each entry of `u`.
     pub inputs: Vec<Symbol>,
     /// The time derivative of each state.
     pub rates: Vec<Expr>,
@@ -42,33 +42,32 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// Expressions with all definitions put in.
+    /// Expressions with all definitions substituted.
     pub fn expand(&self, graph: &mut Graph, values: &[Expr]) -> Vec<Expr> {
         let mut definitions = Substitution::of_definitions(graph, &self.definitions);
         values.iter().map(|&value| definitions.apply(graph, value)).collect()
     }
 }
 
-/// How a coordinate gets its motion.
+/// Kind of motion of a coordinate.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Role {
     /// A road or another motion: an input.
     Prescribed,
-    /// Newton: position and velocity are states. A mass, or a node that an inerter makes heavy.
+    /// Newton: position and velocity are states, for a mass or a node with an inerter.
     Inertial,
-    /// A massless node that a damper holds: its position is a state, its balance gives its velocity.
+    /// A massless node with a damper: its position is a state, its balance gives its velocity.
     Damped,
-    /// A massless node that only springs hold: its balance gives its position.
+    /// A massless node with springs only: its balance gives its position.
     Static,
 }
 
-/// The equations of motion of a model that stands on its roads.
+/// The equations of motion of a model on its roads.
 pub fn derive(model: &Checked, graph: &mut Graph) -> Motion {
     Derivation::new(model, graph, None).run()
 }
 
-/// The equations of motion of a model whose tyre rolls: the tyre's stretch and rate and the forces on its wheel are
-/// given.
+/// The equations of motion of a model with a rolling tyre, whose stretch, rate and forces on the wheel are inputs.
 pub fn derive_rolling(model: &Checked, graph: &mut Graph, tyre: &RollingTyre) -> Motion {
     Derivation::new(model, graph, Some(tyre)).run()
 }
@@ -93,7 +92,7 @@ struct Derivation<'a> {
     /// The links that hold each coordinate, with its coefficient in their stretch.
     held_by: Vec<Vec<(LinkId, Expr)>>,
     roles: Vec<Role>,
-    /// Which node a node keeps its offset from, where a group of them has no other damper.
+    /// The node to which a node keeps its offset, if a group has no other damper.
     leaders: BTreeMap<CoordinateId, CoordinateId>,
     /// The stretch of each link by leaders and offsets.
     reduced: Vec<Vec<(CoordinateId, Expr)>>,
@@ -160,7 +159,7 @@ impl<'a> Derivation<'a> {
         (0..self.model.links.len() as u16).map(LinkId)
     }
 
-    /// The links whose forces act on the coordinates by themselves: all but a rolling tyre.
+    /// The links whose forces act on the coordinates directly: all but a rolling tyre.
     fn acting_links(&self) -> impl Iterator<Item = LinkId> + use<> {
         let rolling = self.tyre.map(|tyre| tyre.link);
         self.links().filter(move |&l| Some(l) != rolling)
@@ -178,7 +177,7 @@ impl<'a> Derivation<'a> {
         all.map(|c| CoordinateId(c as u16)).collect()
     }
 
-    /// `Σ coefficient value(coordinate)` over the stretch of a link, where there is a value.
+    /// `Σ coefficient value(coordinate)` over the stretch of a link, for the coordinates with a value.
     fn along(&mut self, l: LinkId, value: impl Fn(&mut Graph, CoordinateId) -> Option<Expr>) -> Expr {
         let held = self.stretch_of(l).iter();
         let terms = held.filter_map(|&(c, coefficient)| Some((coefficient, value(self.g, c)?)));
@@ -214,8 +213,8 @@ impl<'a> Derivation<'a> {
 
     // States and outputs
 
-    /// Positions and velocities of what has inertia, positions of damped nodes, inner states, z first in each; with
-    /// their rates.
+    /// Positions and velocities of coordinates with inertia, positions of damped nodes, inner states, each with z
+    /// first; with their rates.
     fn states(&mut self) -> Vec<(Symbol, Expr)> {
         let model = self.model;
         let (inertial, damped) = (self.ordered(Role::Inertial), self.ordered(Role::Damped));
@@ -271,10 +270,10 @@ impl<'a> Derivation<'a> {
         }
     }
 
-    /// Keeps the definitions that are used, and collects the inputs.
+    /// Keeps the used definitions, and collects the inputs.
     fn finish(self, states: Vec<Symbol>, rates: Vec<Expr>, outputs: Vec<Expr>) -> Motion {
         let mut used = self.g.symbols(rates.iter().chain(&outputs).copied());
-        // The force of a rolling tyre acts through its contact, and is asked for by itself.
+        // The force of a rolling tyre acts through its contact, and is evaluated separately.
         used.extend(self.tyre.map(|tyre| Symbol::LinkForce(tyre.link)));
         let mut definitions = self.definitions;
         for &(symbol, value) in definitions.iter().rev() {

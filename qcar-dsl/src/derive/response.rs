@@ -42,12 +42,12 @@ pub struct Response {
     pub jacobian: Vec<(u16, u16, Complex)>,
 }
 
-/// What is wanted of a response.
+/// Wanted parts of a response.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Wanted {
-    /// Its values alone: no entry of the Jacobian.
+    /// Values only, without the Jacobian.
     Values,
-    /// Its derivatives by the parameters, too.
+    /// Values and derivatives by the parameters.
     Jacobian,
 }
 
@@ -60,7 +60,7 @@ pub fn responses(model: &Checked, graph: &mut Graph, wanted: Wanted) -> Vec<Resp
         .collect()
 }
 
-/// What excites a model: of each direction its prescribed motions, then its forces.
+/// Excitations of a model: in each direction its prescribed motions, then its forces.
 pub fn sources(model: &Checked) -> Vec<Source> {
     let coordinate = |c: CoordinateId| &model.coordinates[c.0 as usize];
     let mut sources = Vec::new();
@@ -85,9 +85,9 @@ struct System<'a> {
     /// Over all coordinates, prescribed ones included.
     impedance: Symmetric<Complex>,
     compliance: Compliance,
-    /// What each force input does to the coordinates.
+    /// Effect of each force input on the coordinates.
     loads: Vec<Load>,
-    /// What changes with each parameter; nothing where no derivative is wanted.
+    /// Changes by each parameter; empty if no derivatives are wanted.
     changes: Vec<Change>,
 }
 
@@ -157,7 +157,7 @@ impl<'a> System<'a> {
         }
     }
 
-    /// The derivatives of all amplitudes by each parameter, where no adjoint gives those of the outputs.
+    /// The derivatives of all amplitudes by each parameter, if there are no adjoints of the outputs.
     fn moved_by_parameters(&self, g: &mut Graph, source: Source, amplitudes: &[Complex]) -> Vec<Vec<Complex>> {
         let moved = |change| self.moved(g, source, amplitudes, change);
         match self.compliance.has_adjoints() {
@@ -166,8 +166,8 @@ impl<'a> System<'a> {
         }
     }
 
-    /// The amplitudes times the factor of an output, as far as they are used: all of them by an adjoint, else those that are
-    /// seen.
+    /// The amplitudes times the factor of an output, as far as they are used: all of them with an adjoint, otherwise
+    /// those in outputs.
     fn scale(&self, g: &mut Graph, functional: &Functional, amplitudes: &[Complex], scaled: &mut [Complex]) {
         let mut scale = |g: &mut Graph, c: usize| scaled[c] = functional.factor.mul(g, amplitudes[c]);
         match self.changes.is_empty() || !self.compliance.has_adjoints() {
@@ -188,7 +188,7 @@ impl<'a> System<'a> {
         }
     }
 
-    /// The derivative of all amplitudes by a parameter: what moves under the forces by which the balance changes.
+    /// The derivative of all amplitudes by a parameter: the motion under the forces by which the balance changes.
     fn moved(&self, g: &mut Graph, source: Source, amplitudes: &[Complex], change: &Change) -> Vec<Complex> {
         let mut forces = BTreeMap::new();
         let mut push = |g: &mut Graph, c: usize, force: Complex| {
@@ -224,7 +224,7 @@ impl<'a> System<'a> {
         self.compliance.apply(g, &forces)
     }
 
-    /// How an output changes because the amplitudes do, by its adjoint.
+    /// The change of an output by the amplitudes, from its adjoint.
     fn by_adjoint(
         &self,
         g: &mut Graph,
@@ -239,7 +239,7 @@ impl<'a> System<'a> {
         indirect.add(g, loaded)
     }
 
-    /// How the scaled amplitudes under the adjoint change because links and inertias do.
+    /// The change of the scaled amplitudes under the adjoint by links and inertias.
     fn derivative(&self, g: &mut Graph, adjoint: &[Complex], scaled: &[Complex], change: &Change) -> Complex {
         let mut sum = Complex::zero(g);
         for link in &change.links {
@@ -257,7 +257,7 @@ impl<'a> System<'a> {
         sum
     }
 
-    /// `-d(κ s sᵀ)` between adjoint and amplitudes. What does not hold the adjoint is common to all outputs.
+    /// `-d(κ s sᵀ)` between adjoint and amplitudes. Parts without the adjoint are common to all outputs.
     fn through_link(&self, g: &mut Graph, adjoint: &[Complex], scaled: &[Complex], change: &LinkChange) -> Complex {
         let stretch = &self.model.links[change.link].stretch;
         let opening = along(g, stretch, adjoint);
@@ -275,7 +275,7 @@ impl<'a> System<'a> {
     }
 }
 
-/// K + jωC - ω²M, and what inner states add. K, C and M are summed first: they depend on the parameters alone.
+/// K + jωC - ω²M, plus the inner states. K, C and M are summed first, since they depend on the parameters alone.
 fn impedance(model: &Checked, g: &mut Graph, links: &[Stiffness]) -> Symmetric<Complex> {
     let n = model.coordinates.len();
     let (mut stiffness, mut damping, mut mass) = (Symmetric::new(n), Symmetric::new(n), Symmetric::new(n));

@@ -19,11 +19,11 @@ pub struct Stiffness {
     pub damping: Expr,
     /// b, kg
     pub inertance: Expr,
-    /// What the inner states add, N/m.
+    /// Contribution of the inner states, N/m.
     pub relaxation: Complex,
     /// The sum of all, N/m.
     pub total: Complex,
-    /// The force for a unit of each force input that the law uses, by its place in `Model::forces`, while nothing moves.
+    /// The force for a unit of each force input in the law, by its position in `Model::forces`, without motion.
     pub inputs: Vec<(u16, Complex)>,
 }
 
@@ -79,7 +79,7 @@ fn slope(g: &mut Graph, e: Expr, leaf: Symbol) -> Expr {
     Differential::by(g, leaf).of(g, e)
 }
 
-/// What the inner states add to a force when something drives the rate of each of them.
+/// Contribution of the inner states to a force if the rate of each is driven.
 fn through_states(
     model: &Checked,
     g: &mut Graph,

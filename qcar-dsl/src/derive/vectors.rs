@@ -3,7 +3,7 @@
 use crate::expr::{CoordinateId, Symbol};
 use crate::units::Unit;
 
-/// What excites a model.
+/// Kind of an excitation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
     /// A prescribed motion: the response is per m or rad.
@@ -12,7 +12,7 @@ pub enum Source {
     Force(u16),
 }
 
-/// The vectors of a model in the terms of its equations; its description names their entries.
+/// The vectors of a model as symbols of its equations; the description has the names of their entries.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Vectors {
     /// `x`: positions of the masses, their velocities, positions of the nodes, inner states.
@@ -26,19 +26,19 @@ pub struct Vectors {
 /// An entry of a vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Component {
-    /// What it is in the equations.
+    /// Its symbol in the equations.
     pub symbol: Symbol,
     /// Its unit.
     pub unit: Unit,
 }
 
 impl Vectors {
-    /// The place of a symbol in `x`.
+    /// Position of a symbol in `x`.
     pub fn state(&self, symbol: Symbol) -> Option<usize> {
         self.states.iter().position(|state| state.symbol == symbol)
     }
 
-    /// The place of a symbol in `u`.
+    /// Position of a symbol in `u`.
     pub fn input(&self, symbol: Symbol) -> Option<usize> {
         self.inputs.iter().position(|input| input.symbol == symbol)
     }

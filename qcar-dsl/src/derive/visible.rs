@@ -1,5 +1,5 @@
-//! Identifiability: a parameter that changes no response, or only together with others, cannot be estimated
-//! from any measurement. Decided by the rank of the derivatives of all responses at pseudo-random points.
+//! Identifiability: a parameter that changes no response, or only in combination with others, cannot be estimated from
+//! any measurement. It is decided by the rank of the derivatives of all responses at pseudo-random points.
 
 // Values with their derivatives by parameters.
 mod seen;
@@ -25,13 +25,12 @@ use forces::Forces;
 use responses::Derived;
 use seen::Seen;
 
-/// How many motions a nonlinear model is seen in at first, and where that leaves something unseen: each piece of a curve
-/// is met by few motions.
+/// Number of motions at which a nonlinear model is evaluated first, and if that leaves parameters undetermined: few
+/// motions reach each piece of a curve.
 const FEW_MOTIONS: u64 = 4;
 const MANY_MOTIONS: u64 = 64;
 
-/// How much larger pivots must be than what counts as zero, where some of the rows speak for all: the largest entry of all is not
-/// known then.
+/// Factor on the smallest pivot if only some of the rows are known, since the largest entry of all is unknown then.
 const CLEARLY: f64 = 1e3;
 
 /// A parameter set, and the derivatives there: a row for each response, relative to the response and the parameter.
@@ -41,7 +40,7 @@ struct Set {
     scale: f64,
 }
 
-/// A model with what its outputs do not see, and warnings of it; as it is where that is known.
+/// A model with its undetermined parameters and warnings about them; unchanged if they are known.
 pub fn look(model: Checked) -> Checked {
     if model.is_looked_at() {
         return model;
@@ -52,7 +51,7 @@ pub fn look(model: Checked) -> Checked {
     look_at_derived(model, graph, &motion, &linear)
 }
 
-/// The same with the equations at hand, and the graph in which they live.
+/// The same with given equations, and their graph.
 pub fn look_at_derived(model: Checked, graph: Graph, motion: &Motion, linear: &Linear) -> Checked {
     if model.is_looked_at() {
         return model;
@@ -61,8 +60,8 @@ pub fn look_at_derived(model: Checked, graph: Graph, motion: &Motion, linear: &L
     model.with_unseen(unseen, warnings)
 }
 
-/// Parameters that no output sees, and groups of which it sees a combination only, each with a warning: such a model has
-/// a response, but cannot be fitted.
+/// Parameters that no output depends on, and groups that outputs determine only in combination, each with a warning:
+/// such a model has a response, but cannot be fitted.
 fn parameters_are_seen(
     model: &Checked,
     mut graph: Graph,
@@ -88,7 +87,7 @@ fn parameters_are_seen(
     if hidden.is_empty() || first.rows.is_empty() {
         return vec![];
     }
-    // What one set does not see, the others must not see either: a law may be out of its range there.
+    // Parameters must be undetermined at all sets, since a law may be out of its range at one of them.
     let others = [(Kind::Plain, 2), (Kind::Declared, 3)].map(|(kind, seed)| set(kind, seed, MANY_MOTIONS, usize::MAX));
     let sets: Vec<Set> = [first].into_iter().chain(others).collect();
     let groups = hidden.iter().map(|change| support(std::slice::from_ref(change)));
@@ -98,9 +97,9 @@ fn parameters_are_seen(
     groups.iter().map(describe).collect()
 }
 
-/// The parameters that a measurement is to tell: not the known ones, and not those that the law or the states of a
-/// rolling tyre contain, since rolling over a profile shows more than the responses here do, nor those of a constant force
-/// where a position or a force is an output: its mean shows them.
+/// The parameters that a measurement should determine. Known ones are left out, and those in the law or the states of a
+/// rolling tyre, since rolling over a profile shows more than these responses; also those of a constant force if a
+/// position or a force is an output, whose mean shows them.
 fn estimated(model: &Model) -> Vec<u16> {
     let tyres = || model.links.iter().filter(|link| link.rolling.is_some());
     let rolling = tyres().flat_map(|link| link.rolling.iter().flatten());
@@ -118,7 +117,7 @@ fn estimated(model: &Model) -> Vec<u16> {
     (0..model.parameters.len() as u16).filter(counts).collect()
 }
 
-/// The parameters that stand in forces which nothing changes, where an output shows a mean.
+/// Parameters in constant forces, if an output shows a mean.
 fn constant_forces(model: &Model) -> BTreeSet<Symbol> {
     let shows_mean = |signal: &Signal| match signal {
         Signal::Motion(_, quantity) | Signal::Point(_, quantity) => *quantity == Quantity::Position,
@@ -136,12 +135,12 @@ fn constant_forces(model: &Model) -> BTreeSet<Symbol> {
     contents.filter(is_constant).flatten().collect()
 }
 
-/// Whether rows tell all parameters apart by far. Further rows would not hide what these see.
+/// True if rows determine all parameters with a wide margin, so that further rows are not needed.
 fn sees_all(some: &Set, parameters: usize) -> bool {
     null_space_of_scale(some.rows.clone(), parameters, CLEARLY * some.scale).is_empty()
 }
 
-/// The rows of so many motions; of no more than need be where `enough` responses will do.
+/// The rows of this number of motions; fewer if `enough` responses suffice.
 fn set(derived: &Derived, point: Point, motions: u64, enough: usize) -> Set {
     let parameters: Vec<f64> = derived
         .estimated
@@ -171,7 +170,7 @@ fn set(derived: &Derived, point: Point, motions: u64, enough: usize) -> Set {
     }
 }
 
-/// Groups that share a parameter are one.
+/// Merges groups with a common parameter.
 fn merged(groups: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
     let mut merged: Vec<Vec<usize>> = Vec::new();
     for group in groups {
@@ -185,7 +184,7 @@ fn merged(groups: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
     merged
 }
 
-/// How many independent changes of a group the responses at a set leave unseen.
+/// Number of independent changes of a group that the responses at a set do not show.
 fn hidden_changes(set: &Set, group: &[usize]) -> usize {
     let rows: Vec<Vec<f64>> = set
         .rows
@@ -214,7 +213,7 @@ fn describe(model: &Model, estimated: &[u16], group: &[usize], sets: &[Set]) -> 
     (unseen, warning)
 }
 
-/// The combination of two parameters that stays as it is along the unseen change, at every set.
+/// The combination of two parameters that is constant along the undetermined change, at every set.
 fn combination(group: &[usize], sets: &[Set], named: &[(crate::source::Span, &str)]) -> Option<String> {
     let [(_, a), (_, b)] = named else { return None };
     let unseen = |set: &Set| {

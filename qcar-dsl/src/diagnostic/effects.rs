@@ -64,10 +64,10 @@ pub fn no_such_place(span: Span, effect: &str, place: &str, model: &str, places:
 }
 
 /// Something that an effect asks of a place that has none.
-pub fn place_lacks(span: Span, said: &str, name: &str) -> Diagnostic {
+pub fn place_lacks(span: Span, wanted: &str, name: &str) -> Diagnostic {
     Diagnostic::error(
         Code::PlaceLacks,
-        format!("there is no `{said}`: `{name}` does not exist, or has none"),
+        format!("there is no `{wanted}`: `{name}` does not exist, or has none"),
     )
     .label(span, "asked for here")
     .hint("state in the head of the effect what the place must have: `with damper`, `given body`")

@@ -1,5 +1,5 @@
-//! Mistakes are a catalogue: every diagnostic has a code, a message, labels at its places and a hint that says what to
-//! write instead. The constructors stand in one file for each stage of the front end.
+//! Catalogue of mistakes: every diagnostic has a code, a message, labels at its positions and a hint with the remedy.
+//! There is one file of constructors for each stage of the front end.
 
 use std::collections::BTreeSet;
 
@@ -27,16 +27,16 @@ mod render;
 
 pub use code::Code;
 
-/// Whether a model is refused.
+/// Severity.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Severity {
     /// The model is refused.
     Error,
-    /// The model compiles, but something in it is likely not what was meant.
+    /// The model compiles, but something in it is probably a mistake.
     Warning,
 }
 
-/// A place and what is to be said about it.
+/// A position with a short text.
 #[derive(Clone, Debug)]
 pub struct Label {
     /// The place.
@@ -45,23 +45,23 @@ pub struct Label {
     pub text: String,
 }
 
-/// One mistake.
+/// A mistake.
 #[derive(Clone, Debug)]
 pub struct Diagnostic {
-    /// What kind.
+    /// Code.
     pub code: Code,
     /// Error or warning.
     pub severity: Severity,
     /// One sentence without a full stop.
     pub message: String,
-    /// The first is the place of the mistake.
+    /// Labels; the first is at the position of the mistake.
     pub labels: Vec<Label>,
-    /// What to write instead.
+    /// Remedy.
     pub hint: String,
 }
 
 impl Diagnostic {
-    /// True of what says the same of the same place.
+    /// True if both report the same at the same position.
     pub(crate) fn repeats(&self, other: &Diagnostic) -> bool {
         let place = |of: &Diagnostic| {
             let first = of.labels.first();
@@ -112,23 +112,23 @@ pub struct Report {
 }
 
 impl Report {
-    /// True where the model is refused.
+    /// True if the model is refused.
     pub fn refuses(&self) -> bool {
         self.diagnostics
             .iter()
             .any(|diagnostic| diagnostic.severity == Severity::Error)
     }
 
-    /// Adds what was found, each once, and brings all in the order of the texts.
+    /// Adds diagnostics without duplicates, and sorts all in the order of the texts.
     pub(crate) fn add(&mut self, found: Vec<Diagnostic>) {
         let place = |diagnostic: &Diagnostic| {
             let span = diagnostic.labels.first().map(|label| label.span).unwrap_or_default();
             (span.source, span.start)
         };
-        let mut told = BTreeSet::new();
+        let mut known = BTreeSet::new();
         self.diagnostics.extend(found);
         self.diagnostics
-            .retain(|diagnostic| told.insert((diagnostic.code, place(diagnostic), diagnostic.message.clone())));
+            .retain(|diagnostic| known.insert((diagnostic.code, place(diagnostic), diagnostic.message.clone())));
         self.diagnostics.sort_by_key(place);
     }
 }
@@ -154,7 +154,7 @@ fn listed<Word: AsRef<str>>(words: &[Word], last: &str) -> String {
     }
 }
 
-/// The candidate that a misspelt name most likely means; none for names so short that they resemble every other.
+/// The name that a misspelt one most likely means; `None` for names so short that they resemble every other.
 fn nearest<'a, Word: AsRef<str>>(name: &str, candidates: &'a [Word]) -> Option<&'a str> {
     let distance = |word: &&str| levenshtein(name, word);
     let best = candidates.iter().map(AsRef::as_ref).min_by_key(distance)?;

@@ -1,4 +1,4 @@
-//! The form of a report: for people with the lines of the file, for build scripts one line each.
+//! Form of a report: with the lines of the file, or one line per mistake for build scripts.
 
 use std::fmt;
 
@@ -28,7 +28,7 @@ impl Report {
         self.diagnostics.iter().take(MOST).map(line).collect::<String>() + &self.further()
     }
 
-    /// What is left out, in words.
+    /// Text on the omitted mistakes.
     fn further(&self) -> String {
         match self.diagnostics.len().saturating_sub(MOST) {
             0 => String::new(),
@@ -61,13 +61,13 @@ fn place(source: &Source, span: Span) -> String {
     format!("{}:{line}:{column}", source.name)
 }
 
-/// So many mistakes are shown: those after them most often follow from the first.
+/// Largest number of mistakes in a report: further ones most often follow from the first.
 const MOST: usize = 25;
 
-/// Bytes of a line that is still shown; no editor shows more, and the width of a number that is printed ends at 65 535.
+/// Longest line that is shown, bytes; the width of a formatted number is limited to 65 535.
 const LONGEST_LINE: usize = 2000;
 
-/// True where the lines around a place can be shown.
+/// True if the lines around a position can be shown.
 fn is_shown(source: &Source, span: Span) -> bool {
     let first = source.line_column(span.start).0;
     let last = source.line_column(span.end).0;

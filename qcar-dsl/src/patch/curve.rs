@@ -49,15 +49,15 @@ pub fn curves(effect: &Effect) -> Vec<Curve> {
     found
 }
 
-fn tables(of: &Expression, told: &mut dyn FnMut(&Table)) {
+fn tables(of: &Expression, each: &mut dyn FnMut(&Table)) {
     match &of.kind {
-        ExpressionKind::Table(table) => told(table),
-        ExpressionKind::Negative(a) => tables(a, told),
+        ExpressionKind::Table(table) => each(table),
+        ExpressionKind::Negative(a) => tables(a, each),
         ExpressionKind::Binary(_, a, b) | ExpressionKind::If(_, a, b) => {
-            tables(a, told);
-            tables(b, told);
+            tables(a, each);
+            tables(b, each);
         }
-        ExpressionKind::Call(_, arguments) => arguments.iter().for_each(|argument| tables(argument, told)),
+        ExpressionKind::Call(_, arguments) => arguments.iter().for_each(|argument| tables(argument, each)),
         ExpressionKind::Number(_) | ExpressionKind::Name(_) => {}
     }
 }

@@ -93,9 +93,9 @@ pub fn coordinate<Mistake>(
 }
 
 /// Every name in an expression.
-pub fn names_in(e: &Expression, told: &mut dyn FnMut(&Dotted)) {
+pub fn names_in(e: &Expression, each: &mut dyn FnMut(&Dotted)) {
     let mut look = |name: &Dotted| {
-        told(name);
+        each(name);
         Ok::<_, std::convert::Infallible>(None)
     };
     let Ok(_) = expression(e, &mut look);

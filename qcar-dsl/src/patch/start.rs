@@ -160,9 +160,9 @@ fn role(declared: &EffectParameter, value: f64, (low, high): (f64, f64)) -> Resu
         Role::Strength(VanishesAt::Zero) => 0.0,
         Role::Strength(VanishesAt::Infinity) => f64::INFINITY,
         Role::Strength(VanishesAt::Value(_)) if value == 0.0 || (low <= value && value <= high) => value,
-        Role::Strength(VanishesAt::Value(said)) => {
+        Role::Strength(VanishesAt::Value(limit)) => {
             let name = &declared.name.text;
-            let mistake = effects::vanishes_outside_range(said.span, name, value, low, high);
+            let mistake = effects::vanishes_outside_range(limit.span, name, value, low, high);
             return Err(Box::new(mistake));
         }
     };

@@ -1,8 +1,9 @@
-//! What stands around the operations of a program: where its arguments are, its place on the stack, and the loop over points.
+//! Code around the operations of a program: arguments, stack frame, and the loop over points.
 //!
-//! Six arguments come in registers, by the convention of the System V ABI for AMD64 (section 3.2): of a program at one point or for sets
-//! the addresses of up to four parts, of the results, and of the numbers; of one at many points the address of the part that they share,
-//! those of the rows that are read and written, the offset of the first point and that of the end, and the numbers.
+//! Six arguments are passed in registers, by the convention of the System V ABI for AMD64 (section 3.2). For one point
+//! or for sets they are the addresses of up to four parts, of the results, and of the constants; for many points, the
+//! address of the shared part, those of the rows that are read and written, the offsets of the first point and of the
+//! end, and the constants.
 
 use crate::assemble::{Assembler, Memory, Pointer, Width};
 use crate::call::Call;
@@ -10,12 +11,12 @@ use crate::shape::Shape;
 use crate::translate::Wide;
 use qcar_model::LANES;
 
-/// Bytes of a number, and of as many as the widest register holds.
+/// Bytes of a number, and of the widest register.
 const NUMBER: usize = 8;
 const ROOM: usize = size_of::<Wide>();
-/// Bytes of a page: the system gives the stack page by page, and each must be touched in turn.
+/// Bytes of a page: the system maps the stack page by page, and each must be touched in turn.
 const PAGE: usize = 4096;
-/// Of the stack in a call, at most.
+/// Largest stack frame of a call.
 const LARGEST: usize = 64 * PAGE;
 
 const GIVEN: [Pointer; 6] = [
@@ -26,7 +27,7 @@ const GIVEN: [Pointer; 6] = [
     Pointer::R8,
     Pointer::R9,
 ];
-/// Those that a function gives back as it found them.
+/// Registers that a function must preserve.
 const PRESERVED: [Pointer; 6] = [
     Pointer::RBX,
     Pointer::RBP,
@@ -35,25 +36,25 @@ const PRESERVED: [Pointer; 6] = [
     Pointer::R14,
     Pointer::R15,
 ];
-/// The arguments of a program at many points, by their places.
+/// Arguments of a program at many points, by position.
 const ROWS: usize = 1;
 const ROWS_WRITTEN: usize = 2;
 const OFFSET: usize = 3;
 const END: usize = 4;
-/// Those of the others.
+/// Arguments of the other shapes.
 const RESULTS: usize = 4;
-/// The last one of both.
+/// The last argument of both.
 const NUMBERS: usize = 5;
 
-/// Where a value stands in memory.
+/// Memory operand of a value.
 pub enum Place {
-    /// As many numbers as an instruction works on, so that it can take them from there.
+    /// As many numbers as an instruction uses, so that it can read them directly.
     Whole(Memory),
     /// One number that all points share.
     Shared(Memory),
 }
 
-/// How many parts a program can read by entry.
+/// Largest number of parts that a program can read entry by entry.
 pub fn parts(shape: Shape) -> usize {
     match shape {
         Shape::Once | Shape::Sets => RESULTS,
@@ -61,20 +62,20 @@ pub fn parts(shape: Shape) -> usize {
     }
 }
 
-/// Where everything is while a program runs.
+/// Locations of all data while a program runs.
 pub struct Frame {
     shape: Shape,
-    /// Where its arguments are kept.
+    /// Registers of the arguments.
     given: [Pointer; 6],
     calls: bool,
-    /// How many numbers its instructions work on.
+    /// Number of values in a vector.
     pub width: Width,
-    /// Of the row of arguments of its calls.
+    /// Position of the arguments of calls on the stack.
     arguments: usize,
 }
 
 impl Frame {
-    /// Of a program with these calls.
+    /// The frame of a program with these calls.
     pub fn new(shape: Shape, width: Width, calls: &[Call]) -> Self {
         Frame {
             shape,
@@ -85,7 +86,7 @@ impl Frame {
         }
     }
 
-    /// The entry of a part.
+    /// An entry of a part.
     pub fn entry(&self, part: usize, entry: usize) -> Place {
         let own = self.given[part];
         match self.shape {
@@ -95,12 +96,12 @@ impl Frame {
         }
     }
 
-    /// The points of a row that is read.
+    /// The points of a row.
     pub fn row(&self, body: &mut Assembler, row: usize) -> Memory {
         self.points(body, ROWS, row)
     }
 
-    /// Where a result goes.
+    /// Destination of a result.
     pub fn output(&self, body: &mut Assembler, place: usize) -> Memory {
         match self.shape {
             Shape::Once => at(self.given[RESULTS], NUMBER * place),
@@ -118,22 +119,22 @@ impl Frame {
         }
     }
 
-    /// A number of the program.
+    /// A constant of the program.
     pub fn number(&self, number: usize) -> Memory {
         at(self.given[NUMBERS], ROOM * number)
     }
 
-    /// On the stack an argument of a call, behind the stack pointer of before.
+    /// Position of an argument of a call on the stack, after the previous stack pointer.
     pub fn argument(&self, place: usize) -> Memory {
         at(Pointer::RSP, ROOM * (1 + place))
     }
 
-    /// What a call gives.
+    /// Result of a call.
     pub fn result(&self) -> Memory {
         self.argument(self.arguments)
     }
 
-    /// A value that waits.
+    /// A spilled value.
     pub fn slot(&self, slot: u32) -> Memory {
         at(
             Pointer::RSP,
@@ -141,7 +142,7 @@ impl Frame {
         )
     }
 
-    /// After the last operation: again for the next points, from `start` on.
+    /// After the last operation: continues with the next points, at `start`.
     pub fn repeat(&self, body: &mut Assembler, start: usize) {
         if let Shape::Points(_) = self.shape {
             body.add(self.given[OFFSET], self.width.bytes() as i32);
@@ -149,7 +150,7 @@ impl Frame {
         }
     }
 
-    /// The whole function; `None` where it would need too much of the stack.
+    /// The complete function; `None` if it would need too much stack.
     pub fn around(&self, body: Assembler, slots: u32) -> Option<Vec<u8>> {
         let needs_stack = self.calls || slots > 0;
         let bytes = ROOM * (2 + self.arguments) + self.width.bytes() * slots as usize;
@@ -182,7 +183,7 @@ impl Frame {
     }
 }
 
-/// Takes so much of the stack, at an address of whole vectors, with the stack pointer of before at its foot.
+/// Allocates stack at an address aligned to vectors, with the previous stack pointer at its lower end.
 fn enter(before: &mut Assembler, bytes: usize) {
     before.copy(Pointer::RAX, Pointer::RSP);
     for _ in 0..bytes / PAGE {

@@ -1,10 +1,10 @@
-//! What a campaign lists. See the format's description in `docs/campaign-format.md`.
+//! Contents of a campaign. `docs/campaign-format.md` describes the format.
 
 use std::path::PathBuf;
 
 use super::reading::Recorded;
 
-/// What `[vehicle]` may hold beside parameters of the model, corner values, SI.
+/// Keys of `[vehicle]` besides parameters of the model, values of one corner, SI.
 pub const FACTS: [&str; 7] = [
     "m_corner",
     "m_half_vehicle",
@@ -18,49 +18,49 @@ pub const FACTS: [&str; 7] = [
 /// The units of [`FACTS`].
 pub const FACT_UNITS: [&str; 7] = ["kg", "kg", "kg", "m", "N", "m", "m/s^2"];
 
-/// The unit of a fact; `None` of what is none, but a parameter of the model.
+/// The unit of such a key; `None` for a parameter of the model.
 pub fn unit_of_fact(name: &str) -> Option<&'static str> {
     let facts = FACTS.into_iter().zip(FACT_UNITS);
     facts.filter(|(fact, _)| *fact == name).map(|(_, unit)| unit).next()
 }
 
-/// A campaign as its `campaign.toml` describes it.
+/// Contents of `campaign.toml`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Campaign {
-    /// Where it lies.
+    /// Folder of the campaign.
     pub folder: PathBuf,
     /// Short name.
     pub name: String,
-    /// What was measured.
+    /// Description.
     pub description: String,
-    /// The axle model that the engineer starts from.
+    /// The axle model with which the engineer starts.
     pub model: String,
-    /// What is known before any fit, corner values, SI; in the order of the file: [`FACTS`] and parameters of the model.
+    /// Known values of the vehicle for one corner, SI, in the order of the file: [`FACTS`] and parameters of the model.
     pub vehicle: Vec<(String, f64)>,
-    /// What the model's masses are to the tests, where its structure leaves that open.
+    /// Masses of the model with a role in a test, if its structure does not determine them.
     pub roles: RoleNames,
     /// Start values, in the order of the file.
     pub parameters: Vec<Parameter>,
     /// The sensors, in the order of the file.
     pub channels: Vec<Channel>,
-    /// Where their values come from in files that are no plain tables; one for each channel.
+    /// Source of each channel in files that are no plain tables; one for each channel.
     pub taps: Vec<Tap>,
     /// The tests, in the order of the file.
     pub runs: Vec<Run>,
     /// The road profiles.
     pub roads: Vec<Road>,
-    /// What is odd but no error, as sentences to show to the engineer.
+    /// Notices for the engineer, as sentences.
     pub notices: Vec<String>,
-    /// What was read of the runs whose files are no plain tables.
+    /// Data of the runs whose files are no plain tables.
     pub(super) recorded: Vec<Recorded>,
 }
 
 /// Masses of the model that a campaign names itself; see [`Roles`](crate::roles::Roles).
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RoleNames {
-    /// What a K&C rig moves.
+    /// The mass that a K&C rig moves.
     pub wheel: Option<String>,
-    /// What it holds.
+    /// The mass that it holds.
     pub body: Option<String>,
 }
 
@@ -75,9 +75,9 @@ pub struct Parameter {
     pub unit: String,
     /// Bounds of the estimation, lower below upper.
     pub range: Option<(f64, f64)>,
-    /// False where it is known and stays.
+    /// False for a known parameter, which keeps its value.
     pub fit: bool,
-    /// Where the value comes from.
+    /// Source of the value.
     pub comment: String,
 }
 
@@ -86,47 +86,47 @@ pub struct Parameter {
 pub struct Channel {
     /// The column's name.
     pub name: String,
-    /// `pad`, or a mass, link or input of the model.
+    /// Location: `pad`, or a mass, link or input of the model.
     pub location: String,
-    /// Where on the vehicle.
+    /// Side of the vehicle.
     pub side: Side,
-    /// Along which axis.
+    /// Axis.
     pub axis: Axis,
-    /// What it measures, in the SI unit of that quantity.
+    /// Measured quantity; values are in its SI unit.
     pub quantity: Quantity,
 }
 
-/// Which channel of a measured file a sensor or a column of a curve is, and what makes SI of its values.
+/// The channel of a measured file that is a sensor or a column of a curve, and its conversion to SI.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tap {
-    /// The sensor's name, or the column's.
+    /// Name of the sensor or column.
     pub name: String,
     /// The channel in the file: its name, `group/name`, or a pattern with `*` and `?`.
     pub source: String,
-    /// The unit of the values once they have been scaled; `None` for that of the file.
+    /// Unit of the scaled values; `None` for that of the file.
     pub unit: Option<String>,
-    /// The unit of what comes out.
+    /// Unit of the converted values.
     pub si: &'static str,
-    /// What the values of the file are taken times, if anything.
+    /// Factor on the values of the file; `None` without one.
     pub scale: Option<f64>,
-    /// What is added then, in `unit`.
+    /// Offset added after the factor, in `unit`.
     pub offset: f64,
-    /// 1, or -1 where the sensor is mounted the other way round.
+    /// 1, or -1 for a sensor that is mounted the other way round.
     pub sign: f64,
-    /// Seconds at the beginning of the recording whose mean is taken off, if any.
+    /// Duration at the beginning of the recording whose mean is subtracted, s; `None` for no subtraction.
     pub zero: Option<f64>,
-    /// Whether it stands in a file that campaigns share, so that none of a campaign's runs need have it.
+    /// True if it comes from a file that campaigns share, so that no run of a campaign needs it.
     pub shared: bool,
 }
 
 /// The part of a recording that is a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Window {
-    /// s, counted from the trigger where there is one; the beginning of the recording, or the trigger, without.
+    /// Start, s after the trigger if there is one; `None` for the beginning of the recording, or the trigger.
     pub from: Option<f64>,
-    /// s, as `from`; the end of the recording without.
+    /// End, s, counted as `from`; `None` for the end of the recording.
     pub to: Option<f64>,
-    /// What the times count from.
+    /// The trigger at which the time is zero.
     pub trigger: Option<Trigger>,
 }
 
@@ -135,11 +135,11 @@ pub struct Window {
 pub struct Trigger {
     /// The channel in the file, as [`Tap::source`].
     pub channel: String,
-    /// In the unit of the file.
+    /// Threshold, in the unit of the file.
     pub above: f64,
 }
 
-/// Where on the vehicle a sensor sits. A centre sensor measures the mean of both corners.
+/// Side of the vehicle of a sensor. A centre sensor measures the mean of both corners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[expect(missing_docs, reason = "each says it")]
 pub enum Side {
@@ -162,47 +162,48 @@ pub enum Axis {
 /// What a sensor measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Quantity {
-    /// m/s², zero at rest.
+    /// Acceleration, m/s², zero at rest.
     Acceleration,
-    /// m/s.
+    /// Velocity, m/s.
     Velocity,
-    /// m; on a link, its stretch.
+    /// Displacement, m; on a link, its stretch.
     Displacement,
-    /// N; on a link, its force.
+    /// Force, N; on a link, its force.
     Force,
 }
 
-/// A test and the file that holds it.
+/// A test and its file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
-    /// What it is called in results: its file, unless the campaign says otherwise.
+    /// Name in results: that of its file, unless the campaign gives another.
     pub name: String,
-    /// Relative to the folder of the campaign.
+    /// Path relative to the folder of the campaign.
     pub file: String,
-    /// Whether the file is a table with the names and units of the campaign, or one of a rig or another program.
+    /// True if the file is a table with the names and units of the campaign, false for a file of a rig or another
+    /// program.
     pub plain: bool,
-    /// The part of the recording that it is.
+    /// The part of the recording that is the run.
     pub window: Window,
-    /// Sensors that are not to be taken from it.
+    /// Sensors that are not read from it.
     pub without: Vec<String>,
     /// The columns of a curve.
     pub columns: Vec<Tap>,
-    /// What it may be used for.
+    /// Role.
     pub role: Role,
-    /// What was done.
+    /// The test.
     pub test: Test,
 }
 
-/// What a run may be used for.
+/// Role of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Role {
-    /// Parameters may be fitted to it.
+    /// Parameters are fitted to it.
     Fit,
-    /// It judges, and no fit sees it.
+    /// It checks the result, and no fit uses it.
     HeldOut,
 }
 
-/// What was done in a run.
+/// Test of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Test {
     /// 4-poster, single axle (thesis section 3.4.1).
@@ -211,18 +212,18 @@ pub enum Test {
     Bounce,
     /// K&C, vertical sine.
     DynamicBounce {
-        /// m/s.
+        /// Peak velocity, m/s.
         peak_velocity: f64,
-        /// m.
+        /// Amplitude, m.
         amplitude: f64,
     },
     /// K&C, longitudinal cycle limited by force.
     Longitudinal,
     /// One wheel over an obstacle at constant speed.
     Cleat {
-        /// m/s.
+        /// Speed, m/s.
         speed: f64,
-        /// Hz.
+        /// Sample rate, Hz.
         sample_rate: f64,
         /// The name of its road.
         cleat: String,
@@ -233,48 +234,48 @@ pub enum Test {
     Dynamometer(Dynamometer),
 }
 
-/// How a link was tested on a dynamometer.
+/// A dynamometer test.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dynamometer {
-    /// Its name in the model.
+    /// Name of the link in the model.
     pub link: String,
-    /// The axis of the model along which it stands.
+    /// Axis of the link in the model.
     pub axis: Axis,
     /// Half the stroke of the sines, m.
     pub amplitude: f64,
-    /// Standard deviation of every force, N; none where the table has a column of it.
+    /// Standard deviation of every force, N; `None` if the table has a column of it.
     pub uncertainty: Option<f64>,
 }
 
-/// How any excitation was recorded with its response.
+/// A time history of any excitation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Recording {
-    /// Hz.
+    /// Sample rate, Hz.
     pub sample_rate: f64,
-    /// True where the inputs hold nothing above half the sample rate, false where they are held between samples.
+    /// True if the inputs contain nothing above half the sample rate; false if they are held between samples.
     pub band_limited: bool,
-    /// The band that is compared, Hz: from zero or above to below half the sample rate; all of it without one.
+    /// Band that is compared, Hz, below half the sample rate; `None` for all frequencies.
     pub band: Option<(f64, f64)>,
-    /// True where the record holds whole periods of a motion that repeats.
+    /// True if the record consists of whole periods of a periodic motion.
     pub periodic: bool,
 }
 
 /// A sine sweep of constant peak velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sweep {
-    /// m/s.
+    /// Peak velocity, m/s.
     pub peak_velocity: f64,
-    /// Hz.
+    /// First frequency, Hz.
     pub start_frequency: f64,
-    /// Hz, above the start and below half the sample rate.
+    /// Last frequency, Hz, above the first and below half the sample rate.
     pub end_frequency: f64,
-    /// How the frequency grows.
+    /// Growth of the frequency.
     pub spacing: Spacing,
-    /// Hz.
+    /// Sample rate, Hz.
     pub sample_rate: f64,
 }
 
-/// How the frequency of a sweep grows with time.
+/// Growth of the frequency of a sweep over time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[expect(missing_docs, reason = "each says it")]
 pub enum Spacing {
@@ -285,22 +286,22 @@ pub enum Spacing {
 /// A road profile and the file that holds it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Road {
-    /// As cleat runs call it.
+    /// Name in cleat runs.
     pub name: String,
-    /// Relative to the folder of the campaign.
+    /// Path relative to the folder of the campaign.
     pub file: String,
-    /// How the file holds it.
+    /// Form of the profile in the file.
     pub profile: Profile,
 }
 
-/// How a file holds the profile of a road.
+/// Form of a road profile in its file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Profile {
     /// A plain table of x, z and slope.
     Table,
-    /// Corners `[x, z]`, m, that a workbook gave.
+    /// Corners `[x, z]`, m, from a workbook.
     Corners(Vec<[f64; 2]>),
-    /// A measured file, of which this channel holds the heights; none where the file has but one.
+    /// A measured file, with the name of its channel of heights; `None` if it has only one.
     Measured(Option<String>),
 }
 
@@ -323,21 +324,21 @@ impl Campaign {
         self.channels.iter().find(|channel| channel.name == name)
     }
 
-    /// Where `campaign.toml` lies, to be named in errors.
+    /// Path of `campaign.toml`, for error messages.
     pub fn manifest(&self) -> PathBuf {
         self.folder.join("campaign.toml")
     }
 }
 
 impl Window {
-    /// Whether it is the whole recording, on the recording's clock.
+    /// True for the whole recording on its own clock.
     pub fn is_whole(&self) -> bool {
         *self == Window::default()
     }
 }
 
 impl Test {
-    /// The rate of a time history, Hz; `None` for curves.
+    /// Sample rate of a time history, Hz; `None` for curves.
     pub fn sample_rate(&self) -> Option<f64> {
         match self {
             Test::Sweep(sweep) => Some(sweep.sample_rate),
@@ -347,7 +348,7 @@ impl Test {
         }
     }
 
-    /// Whether its samples are a curve that needs no times.
+    /// True for a curve, which needs no times.
     pub fn is_curve(&self) -> bool {
         matches!(self, Test::Bounce | Test::Longitudinal | Test::Dynamometer(_))
     }
@@ -366,7 +367,7 @@ impl Side {
 impl Axis {
     pub(super) const NAMES: &[(&str, Axis)] = &[(Axis::Z.name(), Axis::Z), (Axis::X.name(), Axis::X)];
 
-    /// As models and campaigns write it.
+    /// Name in models and campaigns.
     pub const fn name(self) -> &'static str {
         match self {
             Axis::Z => "z",
@@ -383,7 +384,7 @@ impl Quantity {
         (Quantity::Force.name(), Quantity::Force),
     ];
 
-    /// As campaigns write it.
+    /// Name in campaigns.
     pub const fn name(self) -> &'static str {
         match self {
             Quantity::Acceleration => "acceleration",

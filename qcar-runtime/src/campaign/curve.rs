@@ -7,29 +7,29 @@ use super::manifest::{CURVE, DYNAMIC_CURVE};
 use super::table::{self, Table};
 use crate::error::{InputError, Place, Problem};
 
-/// A quasi-static cycle: forces are relative to the design position, compression is positive in a bounce.
+/// A slow cycle: forces relative to the design position; compression is positive in a bounce.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// Where it was read, to be named in errors.
+    /// Its file, for error messages.
     pub file: PathBuf,
-    /// m, one for each sample.
+    /// Travel, m, one value for each sample.
     pub displacement: Vec<f64>,
-    /// N, one for each sample.
+    /// Force, N, one value for each sample.
     pub force: Vec<f64>,
 }
 
 /// A vertical sine, with its time and velocity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DynamicCurve {
-    /// Where it was read, to be named in errors.
+    /// Its file, for error messages.
     pub file: PathBuf,
-    /// s, increasing, one for each sample.
+    /// Time, s, increasing, one value for each sample.
     pub time: Vec<f64>,
-    /// m.
+    /// Travel, m.
     pub displacement: Vec<f64>,
-    /// m/s.
+    /// Velocity, m/s.
     pub velocity: Vec<f64>,
-    /// N.
+    /// Force, N.
     pub force: Vec<f64>,
 }
 
@@ -37,7 +37,7 @@ impl Campaign {
     /// Reads the curve of a bounce or longitudinal run.
     ///
     /// # Errors
-    /// Where `run` is no such curve, or its file holds anything but finite numbers.
+    /// Fails if `run` is no such curve, or if its file has values that are not finite numbers.
     pub fn curve(&self, run: &Run) -> Result<Curve, InputError> {
         let file = self.folder.join(&run.file);
         if !matches!(run.test, Test::Bounce | Test::Longitudinal) {
@@ -61,7 +61,8 @@ impl Campaign {
     /// Reads the curve of a dynamic bounce run.
     ///
     /// # Errors
-    /// Where `run` is no dynamic bounce, its file holds anything but finite numbers, or time does not increase.
+    /// Fails if `run` is no dynamic bounce, if its file has values that are not finite numbers, or if time does not
+    /// increase.
     pub fn dynamic_curve(&self, run: &Run) -> Result<DynamicCurve, InputError> {
         let file = self.folder.join(&run.file);
         if !matches!(run.test, Test::DynamicBounce { .. }) {

@@ -1,4 +1,4 @@
-//! Tables of a link's force over its speed, as a dynamometer gives them.
+//! Dynamometer tables: the force of a link over its speed.
 
 use std::path::{Path, PathBuf};
 
@@ -7,21 +7,21 @@ use super::curve::{other_kind, read};
 use super::manifest::{FORCES, UNCERTAINTY};
 use crate::error::{InputError, Place, Problem};
 
-/// Forces of a link at its speeds, all positive as it gets longer; one of each for each row.
+/// Forces of a link at its speeds, all positive in extension, one value for each row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ForceTable {
-    /// Where it was read, to be named in errors.
+    /// Its file, for error messages.
     pub file: PathBuf,
-    /// m/s, none of them zero.
+    /// Speed, m/s, not zero.
     pub velocity: Vec<f64>,
-    /// N.
+    /// Force, N.
     pub force: Vec<f64>,
     /// Standard deviation of each force, N, above zero.
     pub uncertainty: Vec<f64>,
 }
 
-/// A force that pushes along with the motion by more than so many of its standard deviations, and by more than this part of the
-/// largest force, has the wrong sign: no damper does that.
+/// A force in the direction of the motion has the wrong sign if it exceeds this number of its standard deviations, and
+/// this share of the largest force: a damper never supplies energy.
 const PUSHES: f64 = 3.0;
 const NOTABLE: f64 = 0.05;
 
@@ -29,8 +29,8 @@ impl Campaign {
     /// Reads the table of a dynamometer.
     ///
     /// # Errors
-    /// Where `run` is none, its file holds anything but finite numbers, a speed is zero, a force pushes along with the motion, or
-    /// the uncertainty is stated nowhere, twice, or not above zero.
+    /// Fails if `run` is no such table, if its file has values that are not finite numbers, if a speed is zero, if a
+    /// force acts in the direction of the motion, or if the uncertainty is missing, given twice, or not positive.
     pub fn force_table(&self, run: &Run) -> Result<ForceTable, InputError> {
         let file = self.folder.join(&run.file);
         let Test::Dynamometer(test) = &run.test else {
@@ -56,7 +56,7 @@ impl Campaign {
     }
 }
 
-/// What the run says of all forces, or its file of each.
+/// The uncertainty of the run for all forces, or of its file for each.
 fn stated(test: &Dynamometer, each: Option<Vec<f64>>, rows: usize, file: &Path) -> Result<Vec<f64>, InputError> {
     let problem = |found: &str, remedy: &str| {
         let expected = "the standard deviation of a force (N), in the run or in a column";
@@ -75,7 +75,7 @@ fn stated(test: &Dynamometer, each: Option<Vec<f64>>, rows: usize, file: &Path) 
 }
 
 impl ForceTable {
-    /// What is wrong with its rows, whose `lines` in the file are known of a plain table.
+    /// Checks the rows; `lines` are their lines in a plain table.
     fn problems(&self, lines: Option<&[u64]>) -> Vec<Problem> {
         let place = |row: usize, name: &str| match lines {
             Some(lines) => Place::Cell(lines[row], name.into()),

@@ -1,4 +1,4 @@
-//! TOML read key by key: each getter notes what is wrong and goes on, so that one reading finds every problem.
+//! Reads TOML key by key. A getter records a problem and continues, so that one reading finds every problem.
 
 use std::cell::RefCell;
 use std::ops::Range;
@@ -12,17 +12,17 @@ use crate::bounded;
 use crate::error::{InputError, Place, Problem};
 use crate::spelling;
 
-/// A TOML file, with what was found wrong in it so far.
+/// A TOML file with the problems found so far.
 pub(super) struct Document {
     file: PathBuf,
     text: String,
     problems: RefCell<Vec<Problem>>,
 }
 
-/// A table of the document, read by its getters; [`Section::finish`] then refuses keys that were not read.
+/// A table of the document. After its getters, [`Section::finish`] refuses keys that were not read.
 pub(super) struct Section<'a> {
     document: &'a Document,
-    /// `run[2].`, to be put before a key; empty at the top.
+    /// Prefix of its keys, such as `run[2].`; empty at the top.
     prefix: String,
     span: Range<usize>,
     table: &'a DeTable<'a>,
@@ -66,7 +66,7 @@ impl Document {
         self.section(String::new(), 0..0, tree.get_ref())
     }
 
-    /// `value`, unless something is wrong with the document.
+    /// `value`, unless the document has problems.
     pub fn finish<T>(self, value: Option<T>) -> Result<T, InputError> {
         InputError::unless_empty(self.problems.into_inner(), value)
     }
@@ -94,14 +94,14 @@ impl Document {
 }
 
 impl<'a> Section<'a> {
-    /// Notes a problem with the value of `key`, or with the whole section where it has no such key.
+    /// Records a problem of the value of `key`, or of the section if it has no such key.
     pub fn wrong(&self, key: &str, found: impl Into<String>, expected: impl Into<String>, remedy: impl Into<String>) {
         let span = self.table.get(key).map_or(self.span.clone(), Spanned::span);
         self.document
             .note(span, self.path(key), found.into(), expected.into(), remedy.into());
     }
 
-    /// Notes what was found wrong with a file that this one names.
+    /// Records problems of a file that this one names.
     pub fn adopt(&self, error: InputError) {
         self.document.problems.borrow_mut().extend(error.problems);
     }
@@ -112,17 +112,17 @@ impl<'a> Section<'a> {
         self.typed(key, value.as_str().map(str::to_string), value, "a text in quotes")
     }
 
-    /// A text, `None` where the key is left out.
+    /// A text; `None` if the key is missing.
     pub fn optional_text(&self, key: &'static str) -> Option<String> {
         self.optional(key).and_then(|_| self.text(key))
     }
 
-    /// A text, empty where the key is left out.
+    /// A text; empty if the key is missing.
     pub fn remark(&self, key: &'static str) -> String {
         self.optional_text(key).unwrap_or_default()
     }
 
-    /// Texts, none where the key is left out.
+    /// Texts; empty if the key is missing.
     pub fn texts(&self, key: &'static str) -> Vec<String> {
         let Some(value) = self.optional(key) else {
             return Vec::new();
@@ -135,12 +135,12 @@ impl<'a> Section<'a> {
             .unwrap_or_default()
     }
 
-    /// Whether the key is there.
+    /// True if the key exists.
     pub fn has(&self, key: &'static str) -> bool {
         self.optional(key).is_some()
     }
 
-    /// A finite number, `None` where the key is left out.
+    /// A finite number; `None` if the key is missing.
     pub fn optional_number(&self, key: &'static str) -> Option<f64> {
         self.optional(key).and_then(|_| self.number(key))
     }
@@ -157,12 +157,12 @@ impl<'a> Section<'a> {
         self.valued(key, value, Some(si))
     }
 
-    /// A quantity, `None` where the key is left out.
+    /// A quantity; `None` if the key is missing.
     pub fn optional_quantity(&self, key: &'static str, si: &str) -> Option<f64> {
         self.optional(key).and_then(|_| self.quantity(key, si))
     }
 
-    /// A number or a text with its unit, which is of the kind of `si` where that is known.
+    /// A number, or a text with a unit of the kind of `si` if that is known.
     fn valued(&self, key: &str, value: &DeValue<'_>, si: Option<&str>) -> Option<f64> {
         let Some(text) = value.as_str() else {
             return self.typed(key, number(value), value, "a finite number");
@@ -192,12 +192,12 @@ impl<'a> Section<'a> {
         self.typed(key, value.as_bool(), value, "true or false")
     }
 
-    /// `true` or `false`, which it is where the key is left out.
+    /// `true` or `false`; the given default if the key is missing.
     pub fn flag(&self, key: &'static str) -> bool {
         self.optional(key).and_then(|_| self.boolean(key)).unwrap_or(false)
     }
 
-    /// Lower and upper bound, `None` where the key is left out.
+    /// Lower and upper bound; `None` if the key is missing.
     pub fn range(&self, key: &'static str) -> Option<(f64, f64)> {
         let value = self.optional(key)?;
         let bounds = value
@@ -235,7 +235,7 @@ impl<'a> Section<'a> {
         choice
     }
 
-    /// The sections of `[[key]]`, in the order of the file; none where it is left out.
+    /// The sections of `[[key]]`, in the order of the file; empty if it is missing.
     pub fn sections(&self, key: &'static str) -> Vec<Section<'a>> {
         let Some(value) = self.optional(key) else {
             return Vec::new();
@@ -259,7 +259,7 @@ impl<'a> Section<'a> {
         array.iter().enumerate().filter_map(member).collect()
     }
 
-    /// The section `[key]`, `None` where it is left out.
+    /// The section `[key]`; `None` if it is missing.
     pub fn section(&self, key: &'static str) -> Option<Section<'a>> {
         let value = self.optional(key)?;
         let table = self.typed(key, value.as_table(), value, "a table")?;
@@ -269,7 +269,7 @@ impl<'a> Section<'a> {
         )
     }
 
-    /// The sections `[this.NAME]`, that is all of this section, with their names, in the order of the file.
+    /// The sections `[this.NAME]` with their names, in the order of the file; this section may contain nothing else.
     pub fn named_sections(&self) -> Vec<(String, Section<'a>)> {
         let member = |name: &'a str| {
             let value = self.table.get(name)?;
@@ -283,8 +283,8 @@ impl<'a> Section<'a> {
         self.names().into_iter().filter_map(member).collect()
     }
 
-    /// The quantities of this section, that is all of it, with their names, in the order of the file. `si` knows the units of
-    /// some.
+    /// The quantities of this section with their names, in the order of the file; it may contain nothing else. `si`
+    /// gives the units of some names.
     pub fn quantities(&self, si: fn(&str) -> Option<&'static str>) -> Vec<(String, f64)> {
         let member = |name: &'a str| {
             let value = self.table.get(name)?.get_ref();
@@ -293,7 +293,7 @@ impl<'a> Section<'a> {
         self.names().into_iter().filter_map(member).collect()
     }
 
-    /// Refuses the keys that no getter has asked for.
+    /// Refuses keys that no getter has read.
     pub fn finish(&self) {
         let asked = self.asked.borrow();
         for name in self.names().into_iter().filter(|name| !asked.contains(name)) {

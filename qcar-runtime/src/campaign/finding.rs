@@ -1,8 +1,8 @@
-//! A flaw of measured samples, as it is reported.
+//! A reported flaw of measured samples.
 
 use std::fmt;
 
-/// Something that is odd about a channel of a run.
+/// A flaw of a channel of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
     /// The run's name.
@@ -11,9 +11,9 @@ pub struct Finding {
     pub channel: String,
     /// Times of the first and last sample concerned, s, on the clock of the file.
     pub span: (f64, f64),
-    /// What it is, with values in SI.
+    /// Description, with values in SI.
     pub what: String,
-    /// True where a sweep that is fitted rests on a channel that is dead.
+    /// True if a fitted sweep needs the channel and it is dead.
     pub fatal: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Flaws of measured samples, found before anything is fitted to them.
+//! Flaws of measured samples, found before a fit.
 
 use qcar_signals::resample::Grid;
 
@@ -12,7 +12,7 @@ use crate::error::{InputError, Place, Problem};
 // Comparison of the left and right sensors of a place.
 mod sides;
 
-/// What the sensors of both sides of a sweep say of each other.
+/// Result of comparing the sensors of both sides of a sweep.
 fn of_sides(run: &Run, history: &History) -> Vec<Finding> {
     match run.test {
         Test::Sweep(_) => sides::of_sides(run, history),
@@ -21,10 +21,10 @@ fn of_sides(run: &Run, history: &History) -> Vec<Finding> {
 }
 
 impl Campaign {
-    /// What is odd about the samples of every time history.
+    /// Flaws of the samples of every time history.
     ///
     /// # Errors
-    /// As [`Campaign::history`].
+    /// Fails as [`Campaign::history`] does.
     pub fn findings(&self) -> Result<Vec<Finding>, InputError> {
         let mut all = Vec::new();
         for run in self.runs.iter().filter(|run| run.test.sample_rate().is_some()) {
@@ -36,7 +36,7 @@ impl Campaign {
         Ok(all)
     }
 
-    /// What was found in the file of a run, and what its sensors say of each other.
+    /// Flaws in the file of a run, and differences between its sensors.
     pub(super) fn of_recorded(&self, run: &Run) -> Result<Vec<Finding>, InputError> {
         let own = self.recorded(run).map(|recorded| recorded.findings.clone());
         let history = self.history(run)?;
@@ -57,12 +57,12 @@ impl Campaign {
         Ok(signals.flat_map(of).chain(of_sides(run, &history)).collect())
     }
 
-    /// What is wrong with the recorded runs together: sources that no file has, and dead channels that a fit needs.
+    /// Problems of all recorded runs together: channels that no file has, and dead channels that a fit needs.
     pub(super) fn problems_of_recorded(&self) -> Vec<Problem> {
         let unheard = self
             .taps
             .iter()
-            .filter(|tap| !tap.shared && self.is_heard_nowhere(&tap.name));
+            .filter(|tap| !tap.shared && self.is_in_no_run(&tap.name));
         let unheard = unheard.filter_map(|tap| Some(self.missing(&tap.name).next()?.1.problem.clone()));
         let findings = self.recorded.iter().flat_map(|recorded| &recorded.findings);
         let dead = findings
@@ -71,8 +71,8 @@ impl Campaign {
         unheard.chain(dead).collect()
     }
 
-    /// Whether no run has a sensor, as far as it may be in a measured file.
-    fn is_heard_nowhere(&self, name: &str) -> bool {
+    /// True if no run has a sensor that a measured file could contain.
+    fn is_in_no_run(&self, name: &str) -> bool {
         let mut plain = self
             .runs
             .iter()
@@ -80,7 +80,7 @@ impl Campaign {
         plain.next().is_none() && !self.recorded.iter().any(|recorded| recorded.has(name))
     }
 
-    /// Whether a sensor was missing in some file.
+    /// True if a sensor was missing in some file.
     pub(super) fn is_missed(&self, name: &str) -> bool {
         self.missing(name).next().is_some()
     }
@@ -93,28 +93,28 @@ impl Campaign {
         Problem::new(self.folder.join(run), place, &finding.what, "a usable signal", remedy)
     }
 
-    /// Sentences on channels that some run lacks and another of its kind has, or that no run has.
+    /// Sentences on channels that a run lacks although another of its kind has them, or that no run has.
     pub(super) fn gaps_of_recorded(&self) -> Vec<String> {
-        let mut said = Vec::new();
+        let mut sentences = Vec::new();
         for tap in &self.taps {
             let mut missing = self.missing(&tap.name);
             match missing.next() {
-                Some((_, first)) if self.is_heard_nowhere(&tap.name) => said.push(first.problem.to_string()),
+                Some((_, first)) if self.is_in_no_run(&tap.name) => sentences.push(first.problem.to_string()),
                 Some(first) => {
                     let lacking = std::iter::once(first)
                         .chain(missing)
                         .filter(|(run, _)| self.has_relative(run, &tap.name));
-                    said.extend(
+                    sentences.extend(
                         lacking.map(|(_, missing)| format!("{}; other runs of the kind have it", missing.problem)),
                     );
                 }
                 None => {}
             }
         }
-        said
+        sentences
     }
 
-    /// Whether a run of the same kind has a sensor.
+    /// True if a run of the same kind has a sensor.
     fn has_relative(&self, run: &str, name: &str) -> bool {
         let kind = |name: &str| {
             let run = self.runs.iter().find(|run| run.name == name);

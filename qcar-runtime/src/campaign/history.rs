@@ -8,23 +8,23 @@ use super::steps;
 use super::table::{self, Table};
 use crate::error::{InputError, Place, Problem};
 
-/// What a run has recorded.
+/// A recorded run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct History {
-    /// Where it was read, to be named in errors.
+    /// Its file, for error messages.
     pub file: PathBuf,
-    /// The test that it recorded.
+    /// The test.
     pub test: Test,
     /// Time of the first sample, s.
     pub start: f64,
-    /// Hz.
+    /// Sample rate, Hz.
     pub sample_rate: f64,
-    /// The recorded channels with their samples, SI, all of one length of at least 2; in the order of the campaign.
+    /// Channels with their samples, SI, all of one length of at least 2, in the order of the campaign.
     pub signals: Vec<(Channel, Vec<f64>)>,
 }
 
 impl History {
-    /// The samples of a channel, `None` where the run did not record it.
+    /// The samples of a channel; `None` if the run did not record it.
     pub fn signal(&self, channel: &str) -> Option<&[f64]> {
         self.signals
             .iter()
@@ -47,8 +47,8 @@ impl Campaign {
     /// Reads the time history of a sweep, cleat run or any other time history.
     ///
     /// # Errors
-    /// Where `run` is a curve, records no channel, holds anything but finite numbers, or where its time does not go on
-    /// in steps of the declared sample rate.
+    /// Fails if `run` is a curve or has no channel, if its file has values that are not finite numbers, or if its time
+    /// does not increase by the declared sample interval.
     pub fn history(&self, run: &Run) -> Result<History, InputError> {
         let file = self.folder.join(&run.file);
         if let Some(recorded) = self.recorded(run) {
@@ -112,7 +112,8 @@ fn no_history(file: &Path) -> InputError {
     Problem::new(file, Place::File, "a curve", "a time history", remedy).into()
 }
 
-/// Time must grow in every step, the steps must be one sample long as a rule, and none may be half or twice as long.
+/// Checks the times: every step is positive, the mean step is one sample interval, and no step is half or twice as
+/// long.
 fn check_time(table: &Table, time: &[f64], sample_rate: f64) -> Result<(), InputError> {
     let at = |row: usize, found: String, expected: String, remedy: &str| {
         Err(Problem::new(&table.file, table.cell(row, "time"), found, expected, remedy).into())

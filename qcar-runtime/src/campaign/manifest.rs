@@ -1,4 +1,4 @@
-//! From `campaign.toml` to [`Campaign`]: what each section must hold, and what must agree between them.
+//! Reads `campaign.toml` as a [`Campaign`], with the requirements for each section and between sections.
 
 use std::path::Path;
 
@@ -19,17 +19,17 @@ mod sensors;
 // `[[run]]` sections.
 mod runs;
 
-/// The columns of a quasi-static curve, m and N.
+/// Columns of a slow curve, m and N.
 pub(super) const CURVE: &[&str] = &["displacement", "force"];
-/// The columns of a dynamic bounce, s, m, m/s and N.
+/// Columns of a dynamic bounce, s, m, m/s and N.
 pub(super) const DYNAMIC_CURVE: &[&str] = &["time", "displacement", "velocity", "force"];
-/// The columns of a dynamometer's table, m/s and N,
+/// Columns of a dynamometer table, m/s and N.
 pub(super) const FORCES: &[&str] = &["velocity", "force"];
-/// and what it may have beside them, N.
+/// Optional column of a dynamometer table, N.
 pub(super) const UNCERTAINTY: &[&str] = &["uncertainty"];
-/// The columns of a road, m, m and 1.
+/// Columns of a road, m, m and 1.
 pub(super) const ROAD: &[&str] = &["x", "z"];
-/// What a road may have beside them.
+/// Optional columns of a road.
 pub(super) const SLOPE: &[&str] = &["slope"];
 
 impl Campaign {
@@ -37,8 +37,8 @@ impl Campaign {
     /// runs of all other files.
     ///
     /// # Errors
-    /// All problems of `campaign.toml` together; where it has none, all problems of the files' headers; where they have
-    /// none, all problems of the other files.
+    /// Fails with all problems of `campaign.toml`; without any, with all problems of the headers of files; without
+    /// these, with all problems of the other files.
     pub fn open(folder: impl AsRef<Path>) -> Result<Campaign, InputError> {
         let folder = folder.as_ref();
         let document = Document::read(&folder.join("campaign.toml"))?;
@@ -126,7 +126,7 @@ fn format(top: &Section<'_>) {
     }
 }
 
-/// Reads every section, even after one has failed, and refuses two that share the value of `key`.
+/// Reads every section, even after an error, and refuses two sections with the same value of `key`.
 fn each<'a, T>(
     sections: Vec<Section<'a>>,
     key: &'static str,
@@ -217,7 +217,7 @@ fn road(section: &Section<'_>) -> Option<Road> {
     })
 }
 
-/// The runs of files that are no plain tables.
+/// Reads the runs of files that are no plain tables.
 fn recorded_runs(campaign: &Campaign, files: &Files) -> Result<Vec<Recorded>, InputError> {
     let (mut runs, mut problems) = (Vec::new(), Vec::new());
     for run in campaign.runs.iter().filter(|run| !run.plain) {
@@ -229,7 +229,7 @@ fn recorded_runs(campaign: &Campaign, files: &Files) -> Result<Vec<Recorded>, In
     InputError::unless_empty(problems, Some(runs))
 }
 
-/// The columns of all plain time histories, once the header of every plain table has been found right.
+/// Columns of all plain time histories, if the header of every plain table is correct.
 fn plain_columns(campaign: &Campaign) -> Result<Vec<String>, InputError> {
     let channels: Vec<_> = campaign.channels.iter().map(|channel| channel.name.as_str()).collect();
     let (mut recorded, mut problems) = (Vec::new(), Vec::new());
@@ -268,7 +268,7 @@ fn unit_of_column(campaign: &Campaign, name: &str) -> Option<&'static str> {
     }
 }
 
-/// Where a file is missing, its columns are what its maker must know.
+/// Description of the columns of a missing file, for its author.
 fn with_columns(problem: Problem, required: &[&str], allowed: &[&str]) -> Problem {
     let columns = required.iter().chain(allowed).copied().collect::<Vec<_>>().join(",");
     match problem.place {
@@ -280,7 +280,7 @@ fn with_columns(problem: Problem, required: &[&str], allowed: &[&str]) -> Proble
     }
 }
 
-/// Every file with the columns that it must and may have.
+/// Every file with its required and optional columns.
 fn tables<'a>(campaign: &'a Campaign, channels: &'a [&str]) -> Vec<(&'a str, &'a [&'a str], &'a [&'a str])> {
     let plain = campaign.runs.iter().filter(|run| run.plain);
     let runs = plain.map(|run| match run.test {

@@ -11,16 +11,16 @@ use crate::error::{InputError, Place, Problem};
 // The channels of distance and height in a measured file.
 mod measured;
 
-/// A road profile as sampled. It goes on flat beyond its ends.
+/// A sampled road profile, level beyond its ends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoadSamples {
-    /// Where it was read, to be named in errors.
+    /// Its file, for error messages.
     pub file: PathBuf,
-    /// m, increasing.
+    /// Distance, m, increasing.
     pub x: Vec<f64>,
-    /// m.
+    /// Height, m.
     pub z: Vec<f64>,
-    /// Of the segment to the right of each point.
+    /// Slope of the segment to the right of each point.
     pub slope: Vec<f64>,
 }
 
@@ -28,7 +28,7 @@ impl Campaign {
     /// Reads a road profile.
     ///
     /// # Errors
-    /// Where its file holds anything but finite numbers, or `x` does not increase.
+    /// Fails if its file has values that are not finite numbers, or if `x` does not increase.
     pub fn road(&self, road: &Road) -> Result<RoadSamples, InputError> {
         let file = self.folder.join(&road.file);
         match &road.profile {
@@ -52,7 +52,7 @@ impl Campaign {
     }
 }
 
-/// A road of straight pieces; two corners above each other are a step.
+/// A road of straight pieces; two corners at the same distance are a step.
 fn between(file: PathBuf, name: &str, corners: &[[f64; 2]]) -> Result<RoadSamples, InputError> {
     let backward = corners.windows(2).find(|pair| pair[1][0] < pair[0][0]);
     let third = corners.windows(3).find(|three| three[0][0] == three[2][0]);
@@ -65,7 +65,7 @@ fn between(file: PathBuf, name: &str, corners: &[[f64; 2]]) -> Result<RoadSample
     let (mut x, mut z, mut slope) = (Vec::new(), Vec::new(), Vec::new());
     for (at, corner) in corners.iter().enumerate() {
         let next = corners.get(at + 1).copied().unwrap_or([f64::INFINITY, corner[1]]);
-        // The foot of a step is where the slope of the piece before it leads.
+        // The lower end of a step follows from the slope of the piece before it.
         if next[0] > corner[0] {
             x.push(corner[0]);
             z.push(corner[1]);
@@ -75,7 +75,7 @@ fn between(file: PathBuf, name: &str, corners: &[[f64; 2]]) -> Result<RoadSample
     Ok(RoadSamples { file, x, z, slope })
 }
 
-/// Slopes of straight pieces from sample to sample; after the last one it is level.
+/// Slopes of the straight pieces between samples; level after the last one.
 fn chords(x: &[f64], z: &[f64]) -> Vec<f64> {
     let chord = |(x, z): (&[f64], &[f64])| (z[1] - z[0]) / (x[1] - x[0]);
     x.windows(2).zip(z.windows(2)).map(chord).chain([0.0]).collect()

@@ -3,30 +3,30 @@
 use super::finding::Finding;
 use crate::error::Problem;
 
-/// What was read of a run.
+/// Data of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Recorded {
     /// The run's name.
     pub run: String,
     /// Time of the first sample, s.
     pub start: f64,
-    /// Hz.
+    /// Sample rate, Hz.
     pub rate: f64,
     /// Name and samples (SI) of each sensor or column, all of one length.
     pub columns: Vec<(String, Vec<f64>)>,
-    /// Taps that the file has no channel for.
+    /// Taps without a channel in the file.
     pub missing: Vec<Missing>,
-    /// What the samples show to be odd, before they were resampled.
+    /// Flaws of the samples before resampling.
     pub findings: Vec<Finding>,
 }
 
 impl Recorded {
-    /// Whether it has a sensor or column.
+    /// True if it has a sensor or column.
     pub fn has(&self, name: &str) -> bool {
         self.columns.iter().any(|(own, _)| own == name)
     }
 
-    /// A column of a curve, which none lacks.
+    /// A column of a curve; every curve has all of its columns.
     pub fn column(&self, name: &str) -> Vec<f64> {
         let column = self.columns.iter().find(|(own, _)| own == name);
         column.expect("a curve without this column was refused").1.clone()
@@ -39,7 +39,7 @@ impl Recorded {
     }
 }
 
-/// A tap that a file has no channel for.
+/// A tap without a channel in a file.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Missing {
     pub name: String,

@@ -1,4 +1,5 @@
-//! Runs whose files are no plain tables: channels found by name, in SI, at one rate, cut to their window.
+//! Runs whose files are no plain tables: finds channels by name, converts to SI, resamples to one rate, and cuts the
+//! window.
 
 use std::path::Path;
 
@@ -27,7 +28,7 @@ mod together;
 pub(super) use files::{BESIDE_MANIFEST, Files, problem, recording};
 
 impl Campaign {
-    /// What was read of a run, `None` where its file is a plain table.
+    /// Data of a run; `None` if its file is a plain table.
     pub(super) fn recorded(&self, run: &Run) -> Option<&Recorded> {
         self.recorded.iter().find(|recorded| recorded.run == run.name)
     }
@@ -41,7 +42,7 @@ impl Campaign {
         taps.iter().filter(|tap| !run.without.contains(&tap.name)).collect()
     }
 
-    /// The channels of its file that a run is made of.
+    /// The channels of its file that a run needs.
     fn sources(&self, run: &Run) -> Vec<String> {
         let taps = self.taps_of(run).into_iter().map(|tap| tap.source.clone());
         let trigger = run.window.trigger.iter().map(|trigger| trigger.channel.clone());
@@ -49,7 +50,7 @@ impl Campaign {
     }
 }
 
-/// The highest rate among the channels of a file that `taps` mean, Hz.
+/// Highest sample rate of the channels that `taps` select in a file, Hz.
 pub(super) fn highest_rate(files: &Files, file: &Path, taps: &[&Tap]) -> Result<f64, InputError> {
     let sources: Vec<String> = taps.iter().map(|tap| tap.source.clone()).collect();
     let recording = files.with(file, &sources)?;
@@ -75,7 +76,7 @@ pub(super) fn highest_rate(files: &Files, file: &Path, taps: &[&Tap]) -> Result<
 pub(super) fn record(campaign: &Campaign, files: &Files, run: &Run) -> Result<Recorded, InputError> {
     let file = campaign.folder.join(&run.file);
     let recording = files.with(&file, &campaign.sources(run))?;
-    // A quasi-static curve needs no times.
+    // A slow curve needs no times.
     let declared = run.test.sample_rate().or(run.test.is_curve().then_some(1.0));
     let span = Span::of(&file, &recording, &run.window, declared)?;
     let (mut channels, mut missing, mut problems) = (Vec::new(), Vec::new(), Vec::new());

@@ -6,20 +6,20 @@ use qcar_signals::resample::Grid;
 use super::contents::{Quantity, Role, Run, Test};
 use super::finding::Finding;
 
-/// What is odd about the samples of a sensor in a run, whose SI unit is `unit`.
+/// Flaws of the samples of a sensor in a run; `unit` is its SI unit.
 pub(super) fn of_samples(run: &Run, (channel, unit): (&str, &str), samples: &[f64], grid: Grid) -> Vec<Finding> {
     let steady = unit == Quantity::Acceleration.unit();
     let finding = |flaw: &Flaw| Finding {
         run: run.name.clone(),
         channel: channel.into(),
         span: (grid.time(flaw.samples.0), grid.time(flaw.samples.1)),
-        what: said(flaw, unit),
+        what: description(flaw, unit),
         fatal: matches!((&flaw.kind, &run.test), (FlawKind::Dead(_), Test::Sweep(_))) && run.role == Role::Fit,
     };
     flaws(samples, steady).iter().map(finding).collect()
 }
 
-fn said(flaw: &Flaw, unit: &str) -> String {
+fn description(flaw: &Flaw, unit: &str) -> String {
     let (count, short) = (flaw.count, |value: f64| format!("{value:.3e}").parse().unwrap_or(value));
     match flaw.kind {
         FlawKind::Dead(value) => format!("every sample is {value} {unit}: the channel is dead"),

@@ -1,20 +1,19 @@
-//! How even times must be to be samples of one rate.
+//! Tolerances for evenly spaced times.
 
-/// Largest relative difference between the declared sample rate and that of the whole record. Below it, the phase error
-/// of a transmissibility is nil, since all channels share the clock, and frequencies are that exact.
+/// Largest relative difference between the declared sample rate and the mean rate of a record. All channels share the
+/// clock, so transmissibilities have no phase error, and their frequencies have this relative error.
 const RATE_TOLERANCE: f64 = 1e-3;
 
-/// How far a step may be from the mean for the shortest and the longest to be one sample by each other's length.
+/// Largest relative deviation of a step from the mean if the shortest and the longest step are to count as equal.
 const ALIKE: f64 = 0.1;
 
-/// Whether a step is one sample long, and not none or two. Printed times are rounded, so that a single step is only right to
-/// that extent.
+/// True if a step is one sample long, instead of none or two. Printed times are rounded, so a single step is only this
+/// accurate.
 pub(super) fn is_one(step: f64, rate: f64) -> bool {
     (0.5..=1.5).contains(&(step * rate))
 }
 
-/// Whether all steps between times are one sample long, whichever of them is the reference: none is a tenth longer or shorter than
-/// their mean.
+/// True if all steps are one sample long: none differs from the mean by more than a tenth.
 pub(super) fn all_alike(times: &[f64]) -> bool {
     let ends = times.first().zip(times.last());
     let mean = ends.map_or(f64::NAN, |(first, last)| (last - first) / (times.len() - 1) as f64);
@@ -24,12 +23,12 @@ pub(super) fn all_alike(times: &[f64]) -> bool {
             .all(|two| (two[1] - two[0] - mean).abs() < ALIKE * mean)
 }
 
-/// Whether a record of so many steps that has this rate on average may have been taken at another.
+/// True if a record with this number of steps and this mean rate may have been sampled at another rate.
 pub(super) fn agree(measured: f64, rate: f64, steps: usize) -> bool {
     (measured / rate - 1.0).abs() <= RATE_TOLERANCE + 0.5 / steps as f64
 }
 
-/// The middle value; there must be one.
+/// Median; there must be a value.
 pub(super) fn median(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     let (_, median, _) = sorted.select_nth_unstable_by(values.len() / 2, f64::total_cmp);

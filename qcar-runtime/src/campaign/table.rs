@@ -1,4 +1,4 @@
-//! A CSV file, plain or packed by gzip, as named columns of finite numbers.
+//! A CSV file, plain or compressed by gzip, as named columns of finite numbers.
 
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
@@ -9,13 +9,13 @@ use super::unit::{Declared, examples};
 use crate::bounded;
 use crate::error::{InputError, Place, Problem};
 
-/// A file read to its end.
+/// A complete file.
 pub(super) struct Table {
     pub file: PathBuf,
     pub names: Vec<String>,
-    /// In SI; as many as names, all of one length, which is at least 1; every number is finite.
+    /// Values in SI; one column for each name, all of one length of at least 1; every number is finite.
     pub columns: Vec<Vec<f64>>,
-    /// The line of each row in the file, since blank lines are skipped.
+    /// Line of each row in the file, since blank lines are skipped.
     pub lines: Vec<u64>,
 }
 
@@ -25,7 +25,7 @@ impl Table {
         Place::Cell(self.lines[row], name.to_string())
     }
 
-    /// Takes out a column that [`check_names`] has found.
+    /// Removes a column that [`check_names`] has found.
     pub fn take(&mut self, name: &str) -> Vec<f64> {
         let at = self
             .names
@@ -36,10 +36,10 @@ impl Table {
     }
 }
 
-/// A column as the header line announces it: `time`, or `time [ms]`.
+/// A column of the header line: `time`, or `time [ms]`.
 pub(super) struct Heading {
     pub name: String,
-    /// What stands in brackets after the name.
+    /// Text in brackets after the name.
     pub unit: Option<String>,
 }
 
@@ -68,7 +68,7 @@ fn headings(file: &Path, reader: &mut csv::Reader<Box<dyn Read>>) -> Result<Vec<
     Ok(names(file, reader)?.iter().map(|name| Heading::of(name)).collect())
 }
 
-/// What is wrong with the units of columns, of which `si` knows what they must be a kind of.
+/// Problems of the units of columns; `si` gives the unit of the required kind.
 pub(super) fn check_units(
     file: &Path,
     headings: &[Heading],
@@ -126,7 +126,7 @@ pub(super) fn read(file: &Path) -> Result<Table, InputError> {
     Ok(table)
 }
 
-/// What is wrong with the columns of a file, whose names must be `required` and may be `allowed`.
+/// Problems of the columns of a file, whose names must be `required` and may be `allowed`.
 pub(super) fn check_names(file: &Path, names: &[String], required: &[&str], allowed: &[&str]) -> Vec<Problem> {
     let mut problems = Vec::new();
     for name in required.iter().filter(|name| !names.iter().any(|n| n == *name)) {
@@ -184,8 +184,8 @@ fn open(file: &Path) -> Result<csv::Reader<Box<dyn Read>>, InputError> {
         .from_reader(Box::new(bytes.chain(&b"\n"[..]))))
 }
 
-/// The line of the record that was just read. That the reader stands on the next one holds for every record, since
-/// line feeds alone end them, and the last line gets one where the file has none; a carriage return is trimmed off.
+/// Line of the record that was just read. Only line feeds end a record, and the last line gets one if the file has
+/// none, so the reader is always on the next line. A carriage return is trimmed.
 fn line(reader: &csv::Reader<Box<dyn Read>>) -> u64 {
     reader.position().line() - 1
 }

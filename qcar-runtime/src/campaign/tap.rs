@@ -1,19 +1,19 @@
-//! Which channel of a measured file a sensor is, and how its values become SI.
+//! The channel of a measured file that is a sensor, and its conversion to SI.
 
 use super::contents::{Quantity, Tap, Trigger, Window};
 use super::fields::Section;
 use super::unit::{self, examples};
 use qcar_signals::si::{Si, in_si};
 
-/// Seconds at the beginning of a recording whose mean is taken off by `zero = "start"`.
+/// Duration at the beginning of a recording whose mean `zero = "start"` subtracts, s.
 const ZERO_SPAN: f64 = 1.0;
 
-/// The keys that say where values come from; with one of them a channel is tapped.
+/// Keys of the source of values; a channel with one of them has a tap.
 const MAPPED: [&str; 5] = ["source", "scale", "offset", "sign", "zero"];
 
-/// A channel's tap, and whether the section says more than what a plain table needs.
+/// The tap of a channel, and true if the section has keys that a plain table does not need.
 ///
-/// `si` is the unit of the values to be had. A plain channel states it as its `unit`, and has its own name as source.
+/// `si` is the unit of the result. A channel without such keys has it as its `unit`, and its own name as source.
 pub(super) fn tap(section: &Section<'_>, name: &str, si: Option<&'static str>) -> Option<(Tap, bool)> {
     let mapped = MAPPED.iter().any(|key| section.has(key));
     let source = section.optional_text("source");
@@ -51,7 +51,7 @@ fn check_unit(section: &Section<'_>, name: &str, unit: &str, si: &'static str, m
     }
 }
 
-/// Whether a unit is one of the quantity whose SI unit is `si`.
+/// True if a unit is one of the quantity with the SI unit `si`.
 pub(super) fn of_quantity(unit: Option<Si>, si: &str) -> bool {
     unit.map(|unit| unit.dimension) == unit::dimension(si)
 }
@@ -72,7 +72,7 @@ fn sign(section: &Section<'_>) -> Option<f64> {
     }
 }
 
-/// How many seconds at the beginning give the zero, if any do.
+/// Duration at the beginning that gives the zero, s; `None` without one.
 fn zero(section: &Section<'_>) -> Option<Option<f64>> {
     let span = section.has("zero_span").then(|| section.positive("zero_span", "s"));
     if !section.has("zero") {
@@ -90,7 +90,7 @@ fn zero(section: &Section<'_>) -> Option<Option<f64>> {
     Some(Some(span.unwrap_or(Some(ZERO_SPAN))?))
 }
 
-/// The tap of each column of a curve that the run maps, and whether it maps any.
+/// The tap of each column of a curve that the run maps, and true if there is one.
 pub(super) fn columns(section: &Section<'_>, columns: &[&'static str]) -> Option<(Vec<Tap>, bool)> {
     let (mut taps, mut any) = (Vec::new(), false);
     for &column in columns.iter().filter(|column| **column != "time") {

@@ -1,4 +1,4 @@
-//! `truth.toml`: the answer that some campaigns are published with. Only tests may read it.
+//! `truth.toml`: the true parameters of a simulated campaign. Only tests may read it.
 
 use std::path::Path;
 
@@ -6,10 +6,10 @@ use super::contents::unit_of_fact;
 use super::fields::{Document, Section};
 use crate::error::InputError;
 
-/// What a campaign was made from.
+/// The true model of a campaign.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Truth {
-    /// Where the data come from.
+    /// Source of the data.
     pub generator: String,
     /// The effects that the base model lacks.
     pub effects: Vec<Effect>,
@@ -20,9 +20,9 @@ pub struct Truth {
 /// An effect of the measured axle that the base model lacks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Effect {
-    /// `coulomb_friction`.
+    /// Name, such as `coulomb_friction`.
     pub name: String,
-    /// A link, mass or sensor location of the model.
+    /// Its place: a link, mass or sensor location of the model.
     pub at: String,
     /// True values of its parameters, SI, in the order of the file.
     pub parameters: Vec<(String, f64)>,
@@ -32,7 +32,7 @@ impl Truth {
     /// Reads a `truth.toml`.
     ///
     /// # Errors
-    /// All problems of the file together.
+    /// Fails with all problems of the file.
     pub fn read(file: &Path) -> Result<Truth, InputError> {
         let document = Document::read(file)?;
         let truth = {

@@ -1,11 +1,11 @@
-//! Coherent SI units as campaigns write them: `N s/m`, `N*s/m`, `kg m^2`, `m/s^2`, `1`; and others that files declare.
+//! SI units of campaigns: `N s/m`, `N*s/m`, `kg m^2`, `m/s^2`, `1`; and other units of files.
 
 use qcar_signals::si::in_si;
 
 /// Exponents of kilogram, metre and second. The radian counts as 1.
 pub type Dimension = [i32; 3];
 
-/// The dimension of a unit, or `None` where it is not a coherent SI unit (`N/mm`, `g`, `bar`, `deg`).
+/// The dimension of a unit; `None` if it is no coherent SI unit (`N/mm`, `g`, `bar`, `deg`).
 ///
 /// Everything after the one `/` divides: `N s/m`, `m/s^2`; another needs parentheses, `N/(m/s)`.
 pub fn dimension(unit: &str) -> Option<Dimension> {
@@ -49,17 +49,17 @@ fn base(symbol: &str) -> Option<Dimension> {
     })
 }
 
-/// A unit that a file declares, and what it is in SI.
+/// A unit of a file, and its value in SI.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Declared {
     multiply: f64,
     divide: f64,
-    /// The coherent SI unit of the same kind; the unit itself where it is one.
+    /// The coherent SI unit of the same kind.
     pub coherent: String,
 }
 
 impl Declared {
-    /// `N/mm`, `N s/mm`, `mm`, `kN`, `km/h`, and every coherent unit; nothing where it is not known. `g` is the standard
+    /// `N/mm`, `N s/mm`, `mm`, `kN`, `km/h`, and every coherent unit; `None` if it is unknown. `g` is the standard
     /// acceleration.
     pub fn of(unit: &str) -> Option<Declared> {
         let unit = unit.trim();
@@ -78,7 +78,7 @@ impl Declared {
         })
     }
 
-    /// A number with its unit after it, such as `187 N/mm`: its value in SI, and the unit.
+    /// A number with its unit, such as `187 N/mm`: its value in SI, and the unit.
     pub fn quantity(text: &str) -> Option<(f64, Declared)> {
         let text = text.trim();
         let mut ends = text.char_indices().map(|(at, c)| at + c.len_utf8()).rev();
@@ -92,23 +92,23 @@ impl Declared {
         Some((unit.si(value), unit))
     }
 
-    /// A value in this unit, brought to SI.
+    /// Converts a value in this unit to SI.
     pub fn si(&self, value: f64) -> f64 {
         value * self.multiply / self.divide
     }
 
-    /// A value in SI, brought to this unit.
+    /// Converts a value in SI to this unit.
     pub fn shown(&self, value: f64) -> f64 {
         value * self.divide / self.multiply
     }
 
-    /// Whether it is of the kind of another unit.
+    /// True if it is of the kind of another unit.
     pub fn is_like(&self, unit: &str) -> bool {
         dimension(&self.coherent) == dimension(unit)
     }
 }
 
-/// What is usual for a dimension.
+/// Usual units of a dimension.
 const USUAL: [(&str, Dimension); 12] = [
     ("1", [0, 0, 0]),
     ("kg", [1, 0, 0]),
@@ -124,7 +124,7 @@ const USUAL: [(&str, Dimension); 12] = [
     ("Pa", [1, -1, -2]),
 ];
 
-/// The coherent unit of a dimension, as an engineer writes it where there is a usual one.
+/// The coherent unit of a dimension, in its usual form if there is one.
 fn coherent(of: Dimension) -> String {
     let usual = USUAL.iter().find(|(_, dimension)| *dimension == of);
     usual.map_or_else(

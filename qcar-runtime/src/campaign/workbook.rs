@@ -1,5 +1,5 @@
-//! The workbook of a vehicle, as `qcar new template` lays it out: values in named cells such as `front.k_tire`, tables of K&C
-//! curves and of cleats.
+//! The workbook of a vehicle as `qcar new template` writes it: values in named cells such as `front.k_tire`, and tables
+//! of K&C curves and cleats.
 
 use std::path::{Path, PathBuf};
 
@@ -14,13 +14,13 @@ use cells::Cells;
 // The contents of named cells.
 mod cells;
 
-/// The axles of a vehicle, as cells and columns begin with them.
+/// Axles, as prefixes of cells and columns.
 pub const AXLES: [&str; 2] = ["front", "rear"];
 /// The sheet of the values.
 pub const VALUES: &str = "Vehicle";
 /// The sheet of the K&C curves, with columns such as `front bounce displacement`.
 pub const CURVES: &str = "K&C curves";
-/// The sheet of the dampers' curves.
+/// The sheet of the damper curves.
 pub const DAMPERS: &str = "Damper curves";
 /// The sheet of the obstacles, with columns such as `cleat_20 x` and `cleat_20 z`.
 pub const CLEATS: &str = "Cleats";
@@ -29,18 +29,18 @@ pub const TESTS: [&str; 2] = ["bounce", "longitudinal"];
 /// See [`TESTS`].
 pub const COLUMNS: [(&str, &str); 2] = [("displacement", "m"), ("force", "N")];
 
-/// What a workbook says of one axle.
+/// Contents of a workbook for one axle.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Workbook {
-    /// Where it was read, to be named in errors.
+    /// Its file, for error messages.
     pub file: PathBuf,
-    /// The model of the axle, where a cell names it.
+    /// The model of the axle; `None` if no cell names it.
     pub model: Option<String>,
-    /// What is known of the vehicle.
+    /// Vehicle data.
     pub vehicle: Vec<Entry>,
     /// Start values of parameters.
     pub parameters: Vec<Entry>,
-    /// Named cells for values that are empty, with their places.
+    /// Empty named cells, with their positions.
     pub blanks: Vec<(String, Place)>,
     /// K&C curves.
     pub(super) runs: Vec<Run>,
@@ -51,38 +51,38 @@ pub struct Workbook {
 /// A value of a workbook.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
-    /// The parameter, or the fact of the vehicle.
+    /// Name of the parameter or vehicle datum.
     pub name: String,
-    /// SI.
+    /// Value, SI.
     pub value: f64,
     /// A coherent SI unit.
     pub unit: String,
     /// Bounds of the estimation, SI.
     pub range: Option<(f64, f64)>,
-    /// False where it is known and stays.
+    /// False for a known parameter, which keeps its value.
     pub fit: bool,
-    /// Where the value comes from.
+    /// Source of the value.
     pub comment: String,
     /// The cell.
     pub place: Place,
 }
 
-/// Whether a file is called as workbooks are.
+/// True if the name of a file is that of a workbook.
 pub fn is_workbook(file: &Path) -> bool {
     file.extension().is_some_and(|extension| extension == "xlsx")
 }
 
 impl Workbook {
-    /// Reads what a workbook says of an axle, `front` or `rear`; without one, of that which its cell `axle` names.
+    /// Reads a workbook for an axle, `front` or `rear`; without one, for the axle in its cell `axle`.
     ///
     /// # Errors
-    /// A file that is no such workbook, and every cell that holds no number, has no unit of its kind, or holds a formula that
-    /// was never computed.
+    /// Fails if the file is no such workbook, and with every cell that has no number, no unit of its kind, or a formula
+    /// that was never computed.
     pub fn read(file: &Path, axle: Option<&str>) -> Result<Workbook, InputError> {
         Workbook::known(file, "", axle, &Files::default())
     }
 
-    /// The same for a campaign, which calls it `named` and has read it at most once.
+    /// The same for a campaign, which calls it `named` and reads it at most once.
     pub(super) fn known(file: &Path, named: &str, axle: Option<&str>, files: &Files) -> Result<Workbook, InputError> {
         let recording = files.get(file)?;
         let mut cells = Cells::new(file, &recording);
@@ -108,7 +108,7 @@ impl Workbook {
     }
 }
 
-/// The signals of a sheet.
+/// The columns of a sheet.
 fn of_sheet<'a>(recording: &'a Recording, sheet: &str) -> impl Iterator<Item = &'a Signal> {
     recording
         .signals
@@ -116,7 +116,7 @@ fn of_sheet<'a>(recording: &'a Recording, sheet: &str) -> impl Iterator<Item = &
         .filter(move |signal| signal.source.group == sheet)
 }
 
-/// How many numbers a column has from its top, where it has any.
+/// Number of values of a column from its top; `None` without any.
 fn filled(signal: &Signal) -> Option<usize> {
     let last = signal.samples.iter().rposition(|value| value.is_finite());
     last.map(|last| last + 1)

@@ -29,8 +29,8 @@ impl Weighting {
         weighted
     }
 
-    /// The vibration dose value of each record, all of one length, as [`vibration_dose`] has it of the weighted one; several
-    /// are weighted in step.
+    /// Vibration dose value of each weighted record, as by [`vibration_dose`]; all have one length and are weighted
+    /// together.
     pub fn doses(self, records: &[&[f64]], sample_rate: f64) -> Vec<f64> {
         let mut doses = Vec::with_capacity(records.len());
         for together in records.chunks(LANES) {
@@ -42,8 +42,8 @@ impl Weighting {
         doses
     }
 
-    /// Tells of every sample what comes out.
-    fn filter(self, records: &[&[f64]], sample_rate: f64, told: impl FnMut(usize, &Lanes)) {
+    /// Calls a function with each filtered sample.
+    fn filter(self, records: &[&[f64]], sample_rate: f64, each: impl FnMut(usize, &Lanes)) {
         let sections = self.sections(sample_rate);
         let digital = sections.iter().map(|section| section.digital(sample_rate));
         let mut cascade = [Digital::default(); SECTIONS];
@@ -51,7 +51,7 @@ impl Weighting {
         widest(Cascade {
             records,
             sections: &cascade,
-            told,
+            each,
         });
     }
 
@@ -116,7 +116,7 @@ struct Digital {
 }
 
 impl Default for Digital {
-    /// Leaves a signal as it is.
+    /// Passes a signal unchanged.
     fn default() -> Self {
         Digital {
             above: [1.0, 0.0, 0.0],
@@ -125,14 +125,15 @@ impl Default for Digital {
     }
 }
 
-/// As many as Wk has.
+/// Number of sections of Wk.
 const SECTIONS: usize = 4;
 
-/// Several records through sections in a row, sample by sample: no section waits for the end of the one before.
+/// Filters several records by sections in series, sample by sample, so that no section waits for the end of the
+/// previous one.
 struct Cascade<'a, T> {
     records: &'a [&'a [f64]],
     sections: &'a [Digital; SECTIONS],
-    told: T,
+    each: T,
 }
 
 impl<T: FnMut(usize, &Lanes)> Loops for Cascade<'_, T> {
@@ -154,7 +155,7 @@ impl<T: FnMut(usize, &Lanes)> Loops for Cascade<'_, T> {
                     signal[lane] = output;
                 }
             }
-            (self.told)(sample, &signal);
+            (self.each)(sample, &signal);
         }
     }
 }

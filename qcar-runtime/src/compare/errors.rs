@@ -2,12 +2,12 @@
 
 use crate::mean::mean_square;
 
-/// Which parts of a run are compared, in s after its onset.
+/// The compared parts of a run, in s after its onset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Windows {
     /// Duration of the impact from the onset (section 2.1: 100 ms), in which peaks are searched.
     pub impact: f64,
-    /// The after-shake follows the impact for so long, or to the end of the shorter record.
+    /// Duration of the after-shake after the impact; it ends earlier if the shorter record does.
     pub after_shake: f64,
 }
 
@@ -20,25 +20,25 @@ impl Default for Windows {
     }
 }
 
-/// How two records of one run lie to each other.
+/// Alignment of two records of one run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Alignment {
-    /// The first sample of the measurement at which the wheel feels the obstacle.
+    /// The sample of the measurement at which the wheel reaches the obstacle.
     pub onset: usize,
-    /// How many samples later the simulation has what the measurement has.
+    /// Delay of the simulation relative to the measurement, in samples.
     pub delay: isize,
 }
 
-/// How a simulated acceleration differs from the measured one.
+/// Difference of a simulated acceleration from the measured one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Errors {
-    /// Largest magnitude in the impact, m/s²: measured, simulated.
+    /// Largest magnitude during the impact, m/s²: measured, simulated.
     pub peaks: [f64; 2],
-    /// Root mean square in the after-shake, m/s²: measured less the noise before the onset, simulated.
+    /// RMS during the after-shake, m/s²: measured without the noise before the onset, simulated.
     pub after_shakes: [f64; 2],
 }
 
-/// Why two records cannot be compared.
+/// Reason why two records cannot be compared.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says it")]
 pub enum CompareError {
@@ -54,18 +54,18 @@ pub enum CompareError {
 
 /// The onset is where the wheel's acceleration first exceeds this share of its peak, upward or downward.
 const ONSET_SHARE: f64 = 0.1;
-/// A simulated peak may be that of the measurement from this share of the highest on: an obstacle throws the wheel up twice, at
-/// either end, and which of both is higher may differ.
+/// Smallest simulated peak, relative to the highest, that may correspond to that of the measurement: an obstacle throws
+/// the wheel up at both ends, and either peak may be the higher.
 const PEAK_SHARE: f64 = 0.5;
-/// The wheel may feel the obstacle for so long before the onset, s; what is earlier is noise.
+/// Longest time between the onset and the peak of the wheel, s; earlier samples are noise.
 const GUARD: f64 = 0.02;
 
 impl Alignment {
-    /// Aligns two records of the wheel's vertical acceleration, of one sample rate, by their upward peaks: the highest of the
-    /// measurement, and of the high ones of the simulation that with which the records agree best.
+    /// Aligns two records of the wheel's vertical acceleration, of one sample rate, by their upward peaks: the highest
+    /// of the measurement, and that high peak of the simulation with which the records agree best.
     ///
     /// # Errors
-    /// A record that never rises above zero.
+    /// Fails if a record never rises above zero.
     pub fn at_peak(measured: &[f64], simulated: &[f64]) -> Result<Self, CompareError> {
         let (peak, onset) = peak_and_onset(measured)?;
         let (_, highest) = upward_peak(simulated).ok_or(CompareError::NoPeak { record: "simulation" })?;
@@ -79,10 +79,10 @@ impl Alignment {
     }
 }
 
-/// The first sample at which the wheel feels the obstacle, by its vertical acceleration.
+/// The first sample at which the wheel reaches the obstacle, from its vertical acceleration.
 ///
 /// # Errors
-/// A record that never rises above zero.
+/// Fails if a record never rises above zero.
 pub fn onset(record: &[f64]) -> Result<usize, CompareError> {
     Ok(peak_and_onset(record)?.1)
 }
@@ -93,7 +93,7 @@ fn peak_and_onset(record: &[f64]) -> Result<(usize, usize), CompareError> {
     Ok((peak, onset.unwrap_or(peak)))
 }
 
-/// The samples that are at least so high and no lower than those beside them.
+/// Local maxima of at least this height.
 fn high_peaks(record: &[f64], least: f64) -> impl Iterator<Item = usize> + '_ {
     let beside = |at: usize| record.get(at).copied().unwrap_or(f64::NEG_INFINITY);
     let is_peak = move |&at: &usize| {
@@ -103,7 +103,7 @@ fn high_peaks(record: &[f64], least: f64) -> impl Iterator<Item = usize> + '_ {
     (0..record.len()).filter(is_peak)
 }
 
-/// The sum of squares by which a simulation differs that is so many samples late; where it has none, it is zero.
+/// Sum of squared differences of a simulation with this delay, in samples; beyond its ends the simulation is zero.
 fn difference(measured: &[f64], simulated: &[f64], delay: isize) -> f64 {
     let simulated = |at: usize| {
         usize::try_from(at as isize + delay)
@@ -119,11 +119,11 @@ fn upward_peak(record: &[f64]) -> Option<(usize, f64)> {
     peak.filter(|&(_, height)| height > 0.0)
 }
 
-/// Largest magnitude in the impact and root mean square in the after-shake of a record without noise, m/s², whose impact
+/// Largest magnitude during the impact and RMS during the after-shake of a record without noise, m/s²; the impact
 /// begins at the sample `onset`.
 ///
 /// # Errors
-/// A record that ends before the after-shake starts.
+/// Fails if the record ends before the after-shake begins.
 pub fn sizes(record: &[f64], onset: usize, sample_rate: f64, windows: &Windows) -> Result<[f64; 2], CompareError> {
     let samples = |seconds: f64| (seconds * sample_rate).round() as isize;
     let onset = onset as isize;
@@ -137,7 +137,7 @@ impl Errors {
     /// Compares two records of one acceleration, both at `sample_rate` (Hz).
     ///
     /// # Errors
-    /// A record that ends before the after-shake starts.
+    /// Fails if a record ends before the after-shake begins.
     pub fn between(
         measured: &[f64],
         simulated: &[f64],
@@ -170,12 +170,12 @@ impl Errors {
         })
     }
 
-    /// Relative error of the peak, positive where the simulation is larger.
+    /// Relative error of the peak, positive if the simulation is larger.
     pub fn peak(&self) -> f64 {
         relative(self.peaks)
     }
 
-    /// Relative error of the after-shake's root mean square, positive where the simulation is larger.
+    /// Relative error of the RMS during the after-shake, positive if the simulation is larger.
     pub fn after_shake(&self) -> f64 {
         relative(self.after_shakes)
     }
@@ -196,7 +196,7 @@ fn relative([measured, simulated]: [f64; 2]) -> f64 {
     (simulated - measured) / measured
 }
 
-/// The samples of a record between two places, as far as it has them.
+/// The samples of a record between two positions, as far as they exist.
 fn cut(record: &[f64], from: isize, to: isize) -> &[f64] {
     let place = |i: isize| (i.max(0) as usize).min(record.len());
     &record[place(from)..place(to).max(place(from))]

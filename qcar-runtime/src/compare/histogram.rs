@@ -7,12 +7,12 @@ pub struct Histogram {
     pub start: f64,
     /// Width of a bin.
     pub width: f64,
-    /// Values in each bin, its lower edge included.
+    /// Number of values in each bin, its lower edge included.
     pub counts: Vec<usize>,
 }
 
 impl Histogram {
-    /// Counts the finite ones of `values` in bins of `width`; without any there is no bin.
+    /// Counts the finite `values` in bins of `width`; without any there are no bins.
     pub fn new(values: &[f64], width: f64) -> Self {
         let bins = || {
             values
@@ -37,17 +37,17 @@ impl Histogram {
     }
 }
 
-/// The size of a set of relative errors, whatever their sign.
+/// Summary of the absolute values of relative errors.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Summary {
-    /// Median of the magnitudes.
+    /// Median.
     pub median: f64,
-    /// Largest magnitude.
+    /// Maximum.
     pub worst: f64,
 }
 
 impl Summary {
-    /// `None` where no error is a finite number.
+    /// `None` if no error is finite.
     pub fn of(errors: &[f64]) -> Option<Self> {
         let mut sizes: Vec<f64> = errors.iter().filter(|e| e.is_finite()).map(|e| e.abs()).collect();
         sizes.sort_by(f64::total_cmp);

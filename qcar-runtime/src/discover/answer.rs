@@ -31,7 +31,7 @@ pub struct Finding {
     pub evidence: f64,
     /// Share of the excess residual that the findings explain, on the held-out runs, or on the fitted runs if none is
     /// held out.
-    pub closed: f64,
+    pub explained: f64,
     /// Next best explanations, best first.
     pub rivals: Vec<Rival>,
 }
@@ -80,13 +80,13 @@ pub struct Discovery {
     /// first.
     pub findings: Vec<Finding>,
     /// Number of alternatives at the end of `findings`; 0 if the verdict is not `Class`.
-    pub alike: usize,
+    pub alternatives: usize,
     /// Explanation by the base model.
     pub before: Explanation,
     /// Explanation with all findings, or with the best of a class; equal to `before` without findings.
     pub after: Explanation,
     /// Detection limits of the effects if the verdict is `None`; empty otherwise.
-    pub visible: Vec<Visible>,
+    pub detection_limits: Vec<DetectionLimit>,
     /// Learned law if no effect of the catalogue explains the data; `None` otherwise.
     pub learned: Option<Learned>,
 }
@@ -105,46 +105,46 @@ pub struct Learned {
 
 /// Detection limit of an effect that was not found.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Visible {
+pub struct DetectionLimit {
     /// Name of the effect.
     pub effect: String,
     /// Link, mass or sensor location.
     pub at: String,
     /// Default size: parameter names and values, SI.
-    pub usual: Vec<(String, f64)>,
-    /// RMS signal of the effect at this size, relative to the smallest that makes it certain. Below 1 it would not have
-    /// been seen.
-    pub times: f64,
+    pub default_size: Vec<(String, f64)>,
+    /// RMS change of the measured values by the effect at this size, relative to the smallest change that makes it
+    /// certain. Below 1 the search would not have found it.
+    pub over_limit: f64,
 }
 
 impl Discovery {
     /// Splits the findings into those that are certain and the alternatives of a class.
-    pub fn told_apart(&self) -> (&[Finding], &[Finding]) {
-        self.findings.split_at(self.findings.len() - self.alike)
+    pub fn certain_and_alternatives(&self) -> (&[Finding], &[Finding]) {
+        self.findings.split_at(self.findings.len() - self.alternatives)
     }
 }
 
 /// Progress message of a search.
 #[derive(Clone, Copy, Debug)]
-pub enum News<'a> {
+pub enum Update<'a> {
     /// The current step.
-    Doing(&'a str),
+    Step(&'a str),
     /// Completed and total parts of the current step.
-    Far(usize, usize),
+    Done(usize, usize),
     /// An intermediate result, valid even if the search is stopped: a description, the current effects and their
     /// explanation. The first one is that of the base model.
-    Known(&'a str, &'a [Finding], &'a Explanation),
+    Interim(&'a str, &'a [Finding], &'a Explanation),
 }
 
 /// Receives progress messages, from any thread.
-pub type Progress<'a> = &'a (dyn Fn(News<'_>) + Sync);
+pub type Progress<'a> = &'a (dyn Fn(Update<'_>) + Sync);
 
-/// RMS of the normalised residual as text: held-out runs, or fitted runs if none is held out.
-pub(super) fn told(of: &Explanation) -> String {
-    let gap = if of.gap.held_out.is_finite() {
-        of.gap.held_out
+/// RMS of the normalised residual as text: of the held-out runs, or of the fitted runs if none is held out.
+pub(super) fn rms_text(of: &Explanation) -> String {
+    let rms = if of.misfit.held_out.is_finite() {
+        of.misfit.held_out
     } else {
-        of.gap.fit
+        of.misfit.fit
     };
-    format!("{gap:.2} times its uncertainty")
+    format!("an RMS residual of {rms:.2} standard deviations")
 }

@@ -1,18 +1,18 @@
-//! Systematic differences between a measurement and a right model: sensor errors within their data sheets, and the
+//! Systematic differences between a measurement and a correct model: sensor errors within their data sheets, and the
 //! model discrepancy.
 
 // Forms and priors of sensor errors.
 mod calibration;
 // Nuisance parameters of all sensors.
 mod nuisance;
-// Effect of sensor errors on the prediction itself.
-mod misread;
-// Effect of sensor errors on the displayed values.
-mod shown;
+// Unknown test conditions, which change the prediction itself.
+mod conditions;
+// Readings of sensors with errors.
+mod sensor_output;
 // Gaussian process discrepancy of the model.
 mod discrepancy;
 
-pub use calibration::{Form, SENSOR, STRAINED, Shape};
-pub use discrepancy::{Discrepancy, Missed};
-pub use nuisance::{Beginning, Nuisance, Suspect};
-pub use shown::Shown;
+pub use calibration::{CALIBRATION_BOUND, Form, SENSOR, Shape};
+pub use discrepancy::{Discrepancy, GroupDiscrepancy};
+pub use nuisance::{InitialState, Nuisance, Suspect};
+pub use sensor_output::SensorOutput;

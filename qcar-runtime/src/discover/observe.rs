@@ -1,9 +1,9 @@
 //! Measured data and their predictions by a model.
 //!
 //! A data set consists of series. Every series knows its run, its sensor and the kind of its values. Every run knows
-//! its role, its level and its excitation. The uncertainty of a value is noise that is independent from line to line.
-//! Errors that all lines of a sensor share, such as its calibration, are not included: see [`noise`](super::noise).
-//! Each kind of run has its own module, which reads the measurement and predicts it.
+//! its role, its level and its excitation. The uncertainty of a value is noise that is independent from value to
+//! value. Errors that all values of a sensor share, such as its calibration, are not included: see
+//! [`noise`](super::noise). The module of each kind of run reads the measurement and predicts it.
 
 // Sensors as signals of a model.
 mod sensor;
@@ -35,9 +35,9 @@ mod read;
 mod predict;
 
 pub use dataset::Evidence;
-pub use predict::{predict, predict_begun, predict_sides, replayed};
-pub use prediction::{Delay, Free, Misread, PredictError, Prediction};
-pub use run::{Band, Means, Passage, Recordings, Restart, Run, Spread, Stimulus, is_seen};
+pub use predict::{predict, predict_by_initial_states, predict_sides, replayed};
+pub use prediction::{Delay, Free, PredictError, Prediction, TestConditions};
+pub use run::{Band, Means, Passage, Recordings, Restart, Run, Spread, Stimulus, measures};
 pub use sensor::{excitation_of, order_of, signal_of};
 pub use series::{Kind, Series};
 pub use sweep::unsteady;

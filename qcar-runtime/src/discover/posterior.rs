@@ -5,9 +5,9 @@
 //!
 //! A rig shakes both sides of a car and its sensors are averaged over them, while a cleat run records one side. The two
 //! corners of an axle differ by one or two percent, which shifts the modes of the after-shake by more than its noise.
-//! So each free parameter with a unit has a factor of its own on the recorded side, held by a prior. A ratio belongs to
-//! the design, and both sides share it. If a ratio that is 1 without an effect could differ, an effect could act on one
-//! side alone.
+//! So each free parameter with a unit has a factor of its own on the recorded side, limited by a prior. A ratio belongs
+//! to the design, and both sides share it. If a ratio that is 1 without an effect could differ between the sides, an
+//! effect could act on one side alone.
 
 // Priors of parameters and sides.
 mod prior;
@@ -30,20 +30,20 @@ mod fit;
 // Profile intervals of parameters.
 mod profile;
 // Optimal design of further measurements.
-mod prospect;
+mod design;
 // Non-steady part of sweep responses.
-mod settle;
+mod unsteady;
 // Initial states of held-out records.
-mod beginning;
+mod initial_states;
 // Residuals over all runs, and where they are large.
-mod gap;
+mod misfit;
 // Explanation of the evidence by a model.
 mod explain;
 
-pub use beginning::beginnings;
+pub use design::expected_gains;
 pub use explain::{Explanation, Given, Setting};
 pub use fit::{Start, fit, refit, refit_with};
-pub use gap::{Gap, Tile, rms};
-pub use prospect::prospects;
+pub use initial_states::estimate_initial_states;
+pub use misfit::{Misfit, Tile};
 pub use refit::Refit;
-pub use settle::settle;
+pub use unsteady::add_unsteady;

@@ -9,25 +9,25 @@ mod screen;
 // Successive halving of the candidates.
 mod race;
 // Multi-start fit of a model without effects.
-mod alone;
+mod multi_start;
 // A set of effects with its fit.
 mod set;
-// Bagged posterior probabilities of the sets.
-mod bagged;
+// Posterior probabilities of the sets.
+mod probability;
 // Checks on held-out runs.
-mod judging;
+mod held_out;
 // Names in the answer.
 mod answers;
 // Verdict and most probable candidates.
 mod verdict;
-// Rivals fitted again beside the later effects.
+// Replacement of effects by their rivals.
 mod exchange;
 // Learned laws for effects that the catalogue lacks.
 mod learn;
 // The first learned law, before pairs and triples of effects are tried.
 mod first_law;
 // Detection limits of effects that were not found.
-mod visible;
+mod detection_limit;
 
 use std::sync::Arc;
 
@@ -35,19 +35,19 @@ use rayon::iter::Either;
 use rayon::prelude::*;
 
 use assembly::{Assembly, Hypothesis, Place, Placed};
-use bagged::probabilities;
+use detection_limit::detection_limits;
 use exchange::exchanges;
 use first_law::FirstLaw;
-use judging::predictive;
+use held_out::supported_part;
+use probability::probabilities;
 use race::{Dropped, Fidelity, Finalist, entrants, race};
 use screen::screen;
-use set::{Set, closed, excess, is_missing, leaves_more_than_noise, most_probable, nameless};
-use verdict::judged;
-use visible::visible;
+use set::{Set, best_base, excess, explained_share, is_missing, leaves_more_than_noise, most_probable};
+use verdict::conclude;
 
-pub use alone::{Alone, Minimum, alone};
+pub use multi_start::{Minimum, MultiStart, fit_from_starts};
 
-use super::answer::{Discovery, Learned, News, Progress, Rival, Verdict, told};
+use super::answer::{Discovery, Learned, Progress, Rival, Update, Verdict, rms_text};
 use super::candidate::{Candidate, Workshop};
 use super::numbers::{EVEN, GREATER_PART, MOST_EFFECTS, Numbers};
 use super::observe::{Evidence, PredictError, Stimulus};
@@ -68,11 +68,11 @@ pub fn discover(
     if evidence.of_role(Role::Fit).next().is_none() {
         return Err(PredictError::NothingToFit);
     }
-    progress(News::Doing("fitting the base model"));
+    progress(Update::Step("fitting the base model"));
     let assembly = Assembly::base(Arc::from(workshop), setting, evidence)?;
-    let base = base(assembly, evidence)?;
-    let alone = format!("the model alone leaves a gap of {}", told(&base.explanation));
-    progress(News::Known(&alone, &[], &base.explanation));
+    let base = fit_base(assembly, evidence)?;
+    let text = format!("the base model alone leaves {}", rms_text(&base.explanation));
+    progress(Update::Interim(&text, &[], &base.explanation));
     let mut sets = vec![base];
     let mut law = FirstLaw::default();
     while let Some(place) = next(&sets, evidence) {
@@ -80,9 +80,9 @@ pub fn discover(
         let lead = law.lead(&sets, place, evidence, progress);
         let more = extensions(&sets[place], lead, evidence, progress);
         sets.extend(more);
-        tell(&sets[best(&sets)], progress);
+        report(&sets[best(&sets)], progress);
     }
-    // Remove effects that the evidence does not need: they only helped the search to get here.
+    // Remove effects that the evidence no longer supports beside those found later.
     while let Some(place) = unreduced(&sets) {
         sets[place].reduced = true;
         let less = reductions(&sets[place], &sets[0], evidence, progress);
@@ -90,53 +90,51 @@ pub fn discover(
     }
     while let Some(place) = unexchanged(&sets, evidence) {
         sets[place].exchanged = true;
-        progress(News::Doing("trying the rivals of each effect"));
+        progress(Update::Step("trying the rivals of each effect"));
         let others = exchanges(&sets[place], &sets, evidence);
         sets.extend(others);
     }
-    let alone = &sets[nameless(&sets)];
-    let (mut discovery, found) = judged(&sets, evidence);
-    if is_unexplained(&discovery, alone, evidence) {
-        let first = law.beside(&sets, evidence, progress);
-        let learned = learn::learn(alone, first, evidence, progress);
-        let learned = learned.map(|learned| learn::told(alone, learned, evidence));
+    let base = &sets[best_base(&sets)];
+    let (mut discovery, found) = conclude(&sets, evidence);
+    if is_unexplained(&discovery, base, evidence) {
+        let first = law.for_base(&sets, evidence, progress);
+        let learned = learn::learn(base, first, evidence, progress);
+        let learned = learned.map(|learned| learn::summary(base, learned, evidence));
         discovery.take(learned, &evidence.numbers);
-    } else if discovery.verdict != Verdict::None && is_doubtful(&sets[found], alone, evidence) {
-        // Several effects together can imitate a law that the catalogue lacks.
-        let law = law.beside(&sets, evidence, progress);
-        let law = law.filter(|law| learn::holds(law, alone, evidence));
+    } else if discovery.verdict != Verdict::None && is_doubtful(&sets[found], base, evidence) {
+        // Several effects together can imitate a law that is not in the catalogue.
+        let law = law.for_base(&sets, evidence, progress);
+        let law = law.filter(|law| learn::is_supported(law, base, evidence));
         let is_certain = |law: &Set| {
             let probability = probabilities(&[&sets[found], law], evidence);
             probability[1] > evidence.numbers.certain()
         };
         let law = law.filter(is_certain);
         let law = law.filter(|law| contradicts(law, &sets[found], evidence));
-        discovery.prefer(law.map(|law| learn::told(alone, law, evidence)));
+        discovery.prefer(law.map(|law| learn::summary(base, law, evidence)));
     }
     if discovery.verdict == Verdict::None {
-        let refit = &alone.explanation.refit;
-        let steady = evidence.less(&refit.unsteady).hurried();
-        discovery.visible = visible(&alone.assembly, refit, &fidelity(&steady).fine);
+        let refit = &base.explanation.refit;
+        let steady = evidence.minus(&refit.unsteady).with_step_limit();
+        discovery.detection_limits = detection_limits(&base.assembly, refit, &fidelity(&steady).fine);
     }
     Ok(discovery)
 }
 
-/// True if the held-out runs support only a part of the set and this part explains most of the excess residual. Then
-/// the set needs no further effect.
-fn is_settled(sets: &[Set], set: usize, evidence: &Evidence) -> bool {
-    let answer = predictive(sets, set, evidence);
-    let closes = closed(&sets[nameless(sets)].explanation, &sets[answer].explanation, evidence);
-    answer != set && closes >= GREATER_PART
+/// True if the held-out runs support only a part of the set and this part explains most of the excess residual.
+fn needs_no_further_effect(sets: &[Set], set: usize, evidence: &Evidence) -> bool {
+    let answer = supported_part(sets, set, evidence);
+    let explained = explained_share(&sets[best_base(sets)].explanation, &sets[answer].explanation, evidence);
+    answer != set && explained >= GREATER_PART
 }
 
-/// True if something is probably missing that no effect of the catalogue explains. That is the case if the verdict is
-/// `Unknown`, or if the verdict is `None` while its probability is below one half or the base model leaves more than
-/// noise.
-fn is_unexplained(discovery: &Discovery, alone: &Set, evidence: &Evidence) -> bool {
+/// True if something is probably missing that no effect of the catalogue explains: the verdict is `Unknown`, or it is
+/// `None` with a probability below one half or with fitted residuals above noise.
+fn is_unexplained(discovery: &Discovery, base: &Set, evidence: &Evidence) -> bool {
     let is_improbable = |probability: f64| probability < EVEN;
     match discovery.verdict {
         Verdict::Unknown => true,
-        Verdict::None => discovery.probability.is_some_and(is_improbable) || leaves_more_than_noise(alone, evidence),
+        Verdict::None => discovery.probability.is_some_and(is_improbable) || leaves_more_than_noise(base, evidence),
         Verdict::Found | Verdict::Class => false,
     }
 }
@@ -145,8 +143,8 @@ impl Discovery {
     /// Stores a learned law if the verdict is `Unknown`. A law that explains enough of the excess residual turns the
     /// verdict `None` into `Unknown`: something is missing, however small.
     fn take(&mut self, learned: Option<Learned>, numbers: &Numbers) {
-        let closes = learned.as_ref().is_some_and(|own| own.explained >= numbers.explained());
-        if closes && self.verdict == Verdict::None {
+        let is_explained = learned.as_ref().is_some_and(|own| own.explained >= numbers.explained());
+        if is_explained && self.verdict == Verdict::None {
             self.verdict = Verdict::Unknown;
             self.probability = None;
         }
@@ -159,7 +157,7 @@ impl Discovery {
             self.verdict = Verdict::Unknown;
             self.probability = None;
             self.findings.clear();
-            self.alike = 0;
+            self.alternatives = 0;
             self.after = self.before.clone();
             self.nuisances[1] = self.nuisances[0].clone();
             self.learned = law;
@@ -167,7 +165,7 @@ impl Discovery {
     }
 }
 
-/// Beam width: the number of one-effect sets that are extended while much remains unexplained. The best pair need not
+/// Beam width: the number of one-effect sets that are extended while an effect is still missing. The best pair may not
 /// contain the best single effect.
 const BEAM: usize = 2;
 
@@ -176,11 +174,13 @@ const BEAM: usize = 2;
 /// most of the excess residual; if they do not, the catalogue has no answer.
 fn next(sets: &[Set], evidence: &Evidence) -> Option<usize> {
     let best = best(sets);
-    let closes = || closed(&sets[nameless(sets)].explanation, &sets[best].explanation, evidence);
+    let explained = || explained_share(&sets[best_base(sets)].explanation, &sets[best].explanation, evidence);
     let effects = sets[best].names().len();
-    let may_grow = effects < 2 || effects < MOST_EFFECTS && closes() >= GREATER_PART;
+    let may_grow = effects < 2 || effects < MOST_EFFECTS && explained() >= GREATER_PART;
     let is_open = !sets[best].extended && may_grow;
-    let first = is_open.then_some(best).filter(|_| !is_settled(sets, best, evidence));
+    let first = is_open
+        .then_some(best)
+        .filter(|_| !needs_no_further_effect(sets, best, evidence));
     first.or_else(|| second(sets).filter(|_| is_missing(&sets[best], evidence)))
 }
 
@@ -196,7 +196,7 @@ fn second(sets: &[Set]) -> Option<usize> {
 fn unexchanged(sets: &[Set], evidence: &Evidence) -> Option<usize> {
     let open = |place: &usize| !sets[*place].exchanged && sets[*place].assembly.effects().len() > 1;
     let best = best(sets);
-    [best, predictive(sets, best, evidence)].into_iter().find(open)
+    [best, supported_part(sets, best, evidence)].into_iter().find(open)
 }
 
 /// The most probable set, if it has several effects and has not been fitted without each of them yet.
@@ -205,31 +205,32 @@ fn unreduced(sets: &[Set]) -> Option<usize> {
     (!sets[best].reduced && sets[best].assembly.effects().len() > 1).then_some(best)
 }
 
-/// True if a learned law contradicts the named effects: it stands where they name nothing, or it explains most of what
-/// they leave. A law that fits a little better at the same place confirms the place, and a name says more.
+/// True if a learned law contradicts the named effects: it is at a place without a named effect, or it explains most of
+/// the excess residual that they leave. A law that fits only a little better at the same place confirms the effect there,
+/// which also has a physical cause.
 fn contradicts(law: &Set, found: &Set, evidence: &Evidence) -> bool {
     let named: Vec<&str> = found.named().map(|own| own.at.as_str()).collect();
     let agrees = law.named().all(|own| named.contains(&own.at.as_str()));
-    !agrees || closed(&found.explanation, &law.explanation, evidence) >= GREATER_PART
+    !agrees || explained_share(&found.explanation, &law.explanation, evidence) >= GREATER_PART
 }
 
 /// True if a learned law must be tried against the answer: the answer has several effects, leaves a significant part of
-/// the excess residual, or the base model has no excess residual to explain.
-fn is_doubtful(found: &Set, alone: &Set, evidence: &Evidence) -> bool {
-    let closes = closed(&alone.explanation, &found.explanation, evidence);
-    found.names().len() > 1 || closes < evidence.numbers.certain() || excess(&alone.explanation, evidence) <= 0.0
+/// the excess residual, or the base model has no excess residual.
+fn is_doubtful(found: &Set, base: &Set, evidence: &Evidence) -> bool {
+    let explained = explained_share(&base.explanation, &found.explanation, evidence);
+    found.names().len() > 1 || explained < evidence.numbers.certain() || excess(&base.explanation, evidence) <= 0.0
 }
 
 fn best(sets: &[Set]) -> usize {
     most_probable(sets, 0..sets.len()).unwrap_or(0)
 }
 
-fn tell(set: &Set, progress: Progress<'_>) {
+fn report(set: &Set, progress: Progress<'_>) {
     let names = set.named().map(|own| format!("{} at {}", own.effect, own.at));
     let names: Vec<String> = names.collect();
     if !names.is_empty() {
-        let words = format!("with {} it leaves {}", names.join(" and "), told(&set.explanation));
-        progress(News::Known(&words, &set.findings(), &set.explanation));
+        let words = format!("with {} it leaves {}", names.join(" and "), rms_text(&set.explanation));
+        progress(Update::Interim(&words, &set.findings(), &set.explanation));
     }
 }
 
@@ -239,7 +240,7 @@ const SPREAD: [f64; 3] = [0.0, 0.35, -0.35];
 const BASE: [(usize, usize); 3] = [(2, 10), (2, 10), (2, 20)];
 
 /// The fitted base model. Searches from several start points on coarse data and refines the best on finer data.
-fn base(assembly: Assembly, evidence: &Evidence) -> Result<Set, PredictError> {
+fn fit_base(assembly: Assembly, evidence: &Evidence) -> Result<Set, PredictError> {
     let fidelity = fidelity(evidence);
     let hypothesis = assembly.hypothesis();
     let starts = SPREAD.par_iter().map(|&spread| {
@@ -249,15 +250,15 @@ fn base(assembly: Assembly, evidence: &Evidence) -> Result<Set, PredictError> {
         };
         hypothesis.fit(&from, &fidelity.coarse, BASE[0])
     });
-    let (fitted, refused): (Vec<_>, Vec<_>) = starts.partition_map(|start| match start {
+    let (fitted, failures): (Vec<_>, Vec<_>) = starts.partition_map(|start| match start {
         Ok(refit) => Either::Left(refit),
         Err(error) => Either::Right(error),
     });
     let is_number = |refit: &Refit| refit.log_evidence.is_finite();
     let order = |a: &Refit, b: &Refit| a.log_evidence.total_cmp(&b.log_evidence);
-    // A failed prediction is an error for the base model; a candidate that fails only drops out.
-    let refusal = refused.into_iter().next().unwrap_or(PredictError::NoNumber);
-    let best = fitted.into_iter().filter(is_number).max_by(order).ok_or(refusal)?;
+    // A base model that cannot be predicted is an error. A candidate that cannot be predicted is dropped.
+    let failure = failures.into_iter().next().unwrap_or(PredictError::NoNumber);
+    let best = fitted.into_iter().filter(is_number).max_by(order).ok_or(failure)?;
     let medium = hypothesis.fit(&hypothesis.place(&best), &fidelity.medium, BASE[1])?;
     let fine = hypothesis.fit(&hypothesis.place(&medium), &fidelity.fine, BASE[2])?;
     let explanation = hypothesis.explanation(fine, evidence)?;
@@ -285,43 +286,42 @@ fn setting_spread(assembly: &Assembly, spread: f64) -> std::collections::BTreeMa
     assembly.given().iter().enumerate().filter_map(moved).collect()
 }
 
-/// Fitted sets with one more effect. Empty if the set explains the data well and no candidate passes the screening: its gain
-/// must exceed the false-alarm threshold and the `lead` of a learned law.
+/// Fitted sets with one more effect. Empty if the set explains the data well and no candidate passes the screening, where
+/// its gain must exceed the false-alarm threshold and the `lead` of a learned law.
 fn extensions(set: &Set, lead: f64, evidence: &Evidence, progress: Progress<'_>) -> Vec<Set> {
     let candidates = set.assembly.candidates();
-    progress(News::Doing(&format!(
+    progress(Update::Step(&format!(
         "screening {} effects at their places",
         candidates.len()
     )));
     let refit = &set.explanation.refit;
-    // The non-steady part of a sweep response changes little when one effect is added, so it is subtracted once.
-    let steady = evidence.less(&refit.unsteady).hurried();
+    // One more effect hardly changes the non-steady part of a sweep response, so it is subtracted once.
+    let steady = evidence.minus(&refit.unsteady).with_step_limit();
     let fidelity = fidelity(&steady);
-    let mut prospects = screen(&set.assembly, &candidates, refit, &fidelity.coarse);
-    // A model that leaves a large residual has poor parameters, so a first-order gain there is unreliable: also start
-    // from the given values, whatever the gain. Fits with effects have already tried those values.
+    let mut screened = screen(&set.assembly, &candidates, refit, &fidelity.coarse);
+    // A model with a large residual has poor parameters, which makes a first-order gain unreliable. So every candidate
+    // also starts from the given values, whatever its gain. Sets with effects have already been fitted from there.
     let is_far_off = set.names().is_empty() && is_missing(set, evidence);
     if is_far_off {
         let given = Place::given(&fidelity.coarse);
-        for prospect in &mut prospects {
-            prospect.start_from(&given, &set.assembly, &candidates[prospect.candidate]);
+        for own in &mut screened {
+            own.start_from(&given, &set.assembly, &candidates[own.candidate]);
         }
     }
     let least = (candidates.len() as f64 / evidence.numbers.false_alarms).ln();
-    // The screening sees only a part of the lines; the lead counts all of them.
-    let least = least.max(lead / THINNED[0] as f64);
-    let worth = |own: &screen::Prospect| own.gain() > least;
-    if !is_far_off && !prospects.iter().any(worth) {
+    // The screening uses every sixth line only, while the lead counts all lines.
+    let least = least.max(lead / DECIMATION[0] as f64);
+    let is_worth_fitting = |own: &screen::Screened| own.gain() > least;
+    if !is_far_off && !screened.iter().any(is_worth_fitting) {
         return Vec::new();
     }
-    let entering = entrants(&candidates, &prospects);
+    let entering = entrants(&candidates, &screened);
     let (finalists, dropped) = race(&set.assembly, &candidates, &entering, &fidelity, progress);
     let of_finalist = |finalist: Finalist| {
         let candidate = &candidates[finalist.candidate];
         let hypothesis = set.assembly.hypothesis_with(candidate)?;
-        let explanation = explained(&hypothesis, finalist.refit, evidence)?;
-        // A nuisance effect has no prior odds against it: every real car has some of it, and the evidence alone decides
-        // whether the data show it.
+        let explanation = finite_explanation(&hypothesis, finalist.refit, evidence)?;
+        // A nuisance effect has no prior odds against it, since every real car has some of it.
         let prior = if candidate.nuisance {
             set.log_prior
         } else {
@@ -338,7 +338,7 @@ fn extensions(set: &Set, lead: f64, evidence: &Evidence, progress: Progress<'_>)
 }
 
 /// Explanation of all runs by a fit; `None` if the prediction fails or the evidence is not finite.
-fn explained(hypothesis: &Hypothesis<'_>, refit: Refit, evidence: &Evidence) -> Option<Explanation> {
+fn finite_explanation(hypothesis: &Hypothesis<'_>, refit: Refit, evidence: &Evidence) -> Option<Explanation> {
     let explanation = hypothesis.explanation(refit, evidence).ok()?;
     explanation.refit.log_evidence.is_finite().then_some(explanation)
 }
@@ -379,10 +379,10 @@ fn log_prior(candidate: &Candidate, all: &[Candidate]) -> f64 {
     -((effects.len() * of_effect) as f64).ln()
 }
 
-/// Refits the set without each of its effects in turn, the last one included. Starting from here, the other effects may
-/// reach a better optimum than the one from which the set was extended.
+/// Refits the set without each of its effects in turn, the last one included. From this start the remaining effects may
+/// reach a better optimum than the set that was extended.
 fn reductions(set: &Set, base: &Set, evidence: &Evidence, progress: Progress<'_>) -> Vec<Set> {
-    progress(News::Doing("fitting with one effect less"));
+    progress(Update::Step("fitting with one effect less"));
     let without = |left_out| without(left_out, set, base, evidence);
     (0..set.assembly.effects().len())
         .into_par_iter()
@@ -398,18 +398,18 @@ fn without(left_out: usize, set: &Set, base: &Set, evidence: &Evidence) -> Optio
     let hypothesis = assembly.hypothesis();
     let mut from = set.assembly.hypothesis().place(&set.explanation.refit);
     from.errors.truncate(base.assembly.hypothesis().sensor_errors());
-    let steady = evidence.less(&set.explanation.refit.unsteady).hurried();
+    let steady = evidence.minus(&set.explanation.refit.unsteady).with_step_limit();
     let refit = hypothesis.fit(&from, &steady, (2, 15)).ok()?;
-    let explanation = explained(&hypothesis, refit, evidence)?;
+    let explanation = finite_explanation(&hypothesis, refit, evidence)?;
     let share = set.log_prior * others.len() as f64 / effects.len() as f64;
     Some(Set::new(assembly, explanation, share))
 }
 
 /// Line decimation of sweeps in the coarse and the medium data.
-const THINNED: [usize; 2] = [6, 3];
+const DECIMATION: [usize; 2] = [6, 3];
 
-/// The data at each fidelity. Only the hardest cleat run is kept in the coarse and medium data: each such run takes as
-/// long as many sweeps.
+/// The data at each fidelity. The coarse and the medium data keep only the cleat run with the highest obstacle, since
+/// the simulation of a cleat run takes as long as that of many sweeps.
 fn fidelity(evidence: &Evidence) -> Fidelity {
     let mut rides: Vec<usize> = (0..evidence.runs.len())
         .filter(|&run| evidence.runs[run].role == Role::Fit && is_ride(&evidence.runs[run].stimulus))
@@ -421,8 +421,8 @@ fn fidelity(evidence: &Evidence) -> Fidelity {
     };
     let few = evidence.only(keep);
     Fidelity {
-        coarse: few.thinned(THINNED[0]),
-        medium: few.thinned(THINNED[1]),
+        coarse: few.thinned(DECIMATION[0]),
+        medium: few.thinned(DECIMATION[1]),
         fine: evidence.only(|run| evidence.runs[run].role == Role::Fit),
     }
 }

@@ -1,40 +1,41 @@
-//! Which parameter sets an ensemble has.
+//! The parameter sets of an ensemble.
 
 use super::permutation::permuted;
 use super::posterior::Posterior;
 use super::sobol::Sobol;
 use crate::random::SplitMix;
 
-/// A parameter that varies between two values.
+/// A varied parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// Its place in the model.
+    /// Position in the model.
     pub parameter: usize,
     /// Lower and upper end, SI.
     pub range: (f64, f64),
 }
 
 impl Axis {
-    /// From 0 at the lower end to 1 at the upper one; both are exact.
+    /// The value at a position from 0 (lower bound) to 1 (upper bound); both bounds are exact.
     fn at(&self, part: f64) -> f64 {
         self.range.0 * (1.0 - part) + self.range.1 * part
     }
 }
 
-/// How parameter sets are chosen.
+/// Kind of design.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Scheme {
-    /// So many values of each axis, at equal distances, the last axis first; with one value it is the middle.
+    /// This number of equally spaced values of each axis; the last axis varies fastest. A single value is the middle.
     Grid(u64),
-    /// So many sets, of which each axis has one in each of as many intervals (McKay, Beckman and Conover 1979).
+    /// This number of sets in a Latin hypercube: each axis has one value in each interval (McKay, Beckman and Conover
+    /// 1979).
     LatinHypercube(u64),
-    /// So many points of Sobol's sequence.
+    /// This number of points of Sobol's sequence.
     Sobol(u64),
-    /// So many draws from the posterior of a fit.
+    /// This number of draws from the posterior of a fit.
     Posterior(u64, Posterior),
 }
 
-/// The parameter sets of an ensemble, each known by its number.
+/// The parameter sets of an ensemble, each determined by its number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Design {
     axes: Vec<Axis>,
@@ -44,10 +45,10 @@ pub struct Design {
 }
 
 impl Design {
-    /// Of these axes; a posterior has an axis for each of its estimates, in that order.
+    /// A design on these axes; a posterior has an axis for each of its estimates, in that order.
     ///
     /// # Panics
-    /// Where Sobol's sequence has fewer dimensions, or a posterior another number of estimates.
+    /// If Sobol's sequence has fewer dimensions, or a posterior another number of estimates.
     pub fn new(axes: Vec<Axis>, scheme: Scheme, seed: u64) -> Self {
         let dimensions = match &scheme {
             Scheme::Sobol(_) => axes.len(),
@@ -64,12 +65,12 @@ impl Design {
         }
     }
 
-    /// What varies.
+    /// The axes.
     pub fn axes(&self) -> &[Axis] {
         &self.axes
     }
 
-    /// What the sets are drawn from, if they are.
+    /// The posterior of the draws; `None` for other designs.
     pub fn posterior(&self) -> Option<&Posterior> {
         match &self.scheme {
             Scheme::Posterior(_, posterior) => Some(posterior),
@@ -77,7 +78,7 @@ impl Design {
         }
     }
 
-    /// The number of sets; `None` of a grid that nobody could count.
+    /// Number of sets; `None` if it overflows.
     pub fn count(&self) -> Option<u64> {
         match self.scheme {
             Scheme::Grid(values) => values.checked_pow(self.axes.len() as u32),
@@ -115,7 +116,7 @@ impl Design {
         }
     }
 
-    /// A random place in the interval of a set.
+    /// A random position in the interval of a set.
     fn stratum(&self, number: u64, count: u64, axis: usize) -> f64 {
         let seed = SplitMix::stream(self.seed, axis as u64).bits();
         let interval = permuted(number, count, seed);

@@ -1,12 +1,12 @@
-//! Permutations of as many numbers as anybody wants, of which any can be asked for without the others.
+//! Permutations of any number of elements, evaluated at single elements.
 
 use crate::random::SplitMix;
 
-/// Below six, small permutations are visibly regular.
+/// Number of rounds: with fewer than six, small permutations are visibly regular.
 const ROUNDS: u64 = 6;
 
-/// Where a permutation of `0..count` takes `place`: a Feistel network over the next power of four, walked until it comes
-/// back below `count` (Black and Rogaway, "Ciphers with arbitrary finite domains", CT-RSA 2002).
+/// Image of `place` under a permutation of `0..count`: a Feistel network over the next power of four, repeated until
+/// the result is below `count` (Black and Rogaway, "Ciphers with arbitrary finite domains", CT-RSA 2002).
 pub(super) fn permuted(place: u64, count: u64, seed: u64) -> u64 {
     let half = (u64::BITS - (count - 1).leading_zeros()).div_ceil(2).max(1);
     let mut at = place;

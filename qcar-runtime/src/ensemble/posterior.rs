@@ -1,16 +1,16 @@
-//! Parameter sets that are as probable as a fit says: draws from the normal distribution of its estimates, within their ranges.
+//! Parameter sets drawn from the normal distribution of the estimates of a fit, within their ranges.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use thiserror::Error;
 
 use crate::random::SplitMix;
 
-/// What a fit says of a parameter.
+/// Estimate of a parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
     /// Name, for messages.
     pub name: String,
-    /// SI.
+    /// Value, SI.
     pub value: f64,
     /// Standard error, SI.
     pub stderr: f64,
@@ -26,7 +26,7 @@ pub struct Posterior {
     root: DMatrix<f64>,
 }
 
-/// Why estimates have no distribution.
+/// Reason why estimates have no distribution.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[expect(missing_docs, reason = "the message says it")]
 pub enum PosteriorError {
@@ -41,17 +41,17 @@ pub enum PosteriorError {
     },
 }
 
-/// An eigenvalue of a matrix of correlations may be negative by rounding, hardly by more.
+/// Smallest eigenvalue of a correlation matrix that rounding explains.
 const ROUNDING: f64 = 1e-9;
 
-/// So often a set is drawn anew because it lies outside of a range.
+/// Number of attempts to draw a set within the ranges.
 const MOST_DRAWS: usize = 10_000;
 
 impl Posterior {
-    /// Of estimates and their `correlations`, each a pair of places with its value.
+    /// The distribution of estimates with these `correlations`, each a pair of positions with its value.
     ///
     /// # Errors
-    /// Correlations that no distribution has, and an estimate outside of its own range.
+    /// Fails if the correlations belong to no distribution, or if an estimate is outside its range.
     pub fn new(estimates: Vec<Estimate>, correlations: &[(usize, usize, f64)]) -> Result<Self, PosteriorError> {
         for own in &estimates {
             let (low, high) = own.range;
@@ -76,12 +76,12 @@ impl Posterior {
         Ok(Self { estimates, root })
     }
 
-    /// What it is of.
+    /// The estimates.
     pub fn estimates(&self) -> &[Estimate] {
         &self.estimates
     }
 
-    /// The draw of a number: all parameters within their ranges; NaN where ten thousand draws are not.
+    /// The draw with this number, within all ranges; NaN if ten thousand attempts fail.
     pub fn draw(&self, number: u64, seed: u64, into: &mut [f64]) {
         let mut random = SplitMix::stream(seed, number);
         for _ in 0..MOST_DRAWS {

@@ -1,4 +1,4 @@
-//! The rows of an ensemble: a parameter set, a ride, and what is measured of both.
+//! The rows of an ensemble: a parameter set, a ride, and the metrics.
 
 use std::ops::Range;
 
@@ -12,40 +12,40 @@ use crate::response::parameters::Values;
 use crate::simulate::{Car, Ride, Settings, SimulateError, Standard, Variant, rides_abreast};
 use crate::tyre::Tyre;
 
-/// What every parameter set is driven over.
+/// The rides of every parameter set.
 pub struct Track {
-    /// At least one.
+    /// Rides, at least one.
     pub rides: Vec<Standard>,
     /// Radius, static deflection and geometry.
     pub tyre: Tyre,
     /// Static load that the tyre carries, N.
     pub load: f64,
-    /// What of the model is simulated.
+    /// Variant of the model.
     pub variant: Variant,
 }
 
-/// A model at the parameter sets of a design, over the rides of a track, measured.
+/// An ensemble: a model at the parameter sets of a design, over the rides of a track.
 pub struct Ensemble<'a, M: ?Sized> {
     /// The model.
     pub model: &'a M,
-    /// Where nothing varies.
+    /// Values of the parameters that do not vary.
     pub values: Values,
-    /// Which sets.
+    /// Design.
     pub design: Design,
-    /// Over which rides, if any.
+    /// Rides; `None` without any.
     pub track: Option<Track>,
-    /// What is measured.
+    /// Metrics.
     pub metrics: Metrics<'a, M>,
-    /// Whether the masses of a set are such.
+    /// Check of the masses of a set.
     pub possible: &'a (dyn Fn(&[f64]) -> Option<String> + Sync),
 }
 
 /// The rows of a set.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Rows {
-    /// One after another, each as long as there are columns.
+    /// The rows one after another, each with all columns.
     pub numbers: Vec<f64>,
-    /// Why the first of them has no metrics, where one has none.
+    /// Why the first row without metrics has none; `None` if all have metrics.
     pub failure: Option<String>,
 }
 
@@ -55,16 +55,16 @@ struct Set {
     /// The values of the axes, and of all parameters.
     varied: Vec<f64>,
     values: Values,
-    /// Why it is none.
+    /// Why it is invalid; `None` for a valid set.
     impossible: Option<String>,
 }
 
-/// So many rides are given to a thread at once: lanes are empty only while the last of them end.
+/// Number of rides that a thread gets at once: lanes are idle only while the last of them end.
 const TOGETHER: usize = 96;
 
 impl<M: Model + ?Sized> Ensemble<'_, M> {
-    /// What a row holds: the numbers of set and ride from 0 on, height and speed of the ride, the parameters that vary, all
-    /// metrics, and at the end 1 where they could not be computed (they are NaN then), else 0.
+    /// Columns: numbers of set and ride from 0 on, height and speed of the ride, the varied parameters, all metrics,
+    /// and at the end 1 if the metrics could not be computed (they are NaN then), otherwise 0.
     pub fn columns(&self) -> Vec<Column> {
         let column = |name: &str, unit: &str| Column {
             name: name.into(),
@@ -165,7 +165,7 @@ impl<M: Model + ?Sized> Ensemble<'_, M> {
         into.numbers.push(f64::from(u8::from(failed)));
     }
 
-    /// What is measured of each ride of each set; nothing without a track.
+    /// Metrics of each ride of each set; empty without rides.
     fn ridden(&self, sets: &[Set]) -> Vec<Result<Vec<f64>, String>> {
         let each = self.rows_of_set();
         let before = |set: &Set| set.impossible.clone().map_or(Ok(Vec::new()), Err);

@@ -1,5 +1,5 @@
-//! Sobol's sequence: points that fill a cube more evenly than random ones (Sobol 1967; Bratley and Fox, "Algorithm 659", ACM
-//! Trans. Math. Softw. 14, 1988).
+//! Sobol's sequence: points that cover a cube more uniformly than random ones (Sobol 1967; Bratley and Fox, "Algorithm
+//! 659", ACM Trans. Math. Softw. 14, 1988).
 
 mod directions;
 
@@ -7,10 +7,10 @@ use directions::TABLE;
 
 use crate::random::SplitMix;
 
-/// So many dimensions have direction numbers.
+/// Number of dimensions with direction numbers.
 pub const DIMENSIONS: usize = TABLE.len() + 1;
 
-/// So many points differ.
+/// Number of distinct points.
 pub const POINTS: u64 = 1 << BITS;
 
 const BITS: u32 = 32;
@@ -19,13 +19,14 @@ const BITS: u32 = 32;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Sobol {
     directions: Vec<[u32; BITS as usize]>,
-    /// What shifts the points of each dimension, bit by bit.
+    /// Random shift of the points of each dimension, bit by bit.
     shifts: Vec<u32>,
 }
 
 impl Sobol {
-    /// The sequence in a cube of at most [`DIMENSIONS`] dimensions. Seed 0 leaves it as it is; any other shifts all points by
-    /// random bits, which keeps them as even as they are (Owen, "Monte Carlo theory, methods and examples", section 17.4).
+    /// The sequence in a cube of at most [`DIMENSIONS`] dimensions. Seed 0 is the original sequence; any other shifts
+    /// all points by random bits, which keeps their uniformity (Owen, "Monte Carlo theory, methods and examples",
+    /// section 17.4).
     pub fn new(dimensions: usize, seed: u64) -> Self {
         assert!(dimensions <= DIMENSIONS, "the caller has counted the dimensions");
         let shift = |dimension: usize| match seed {
@@ -48,8 +49,8 @@ impl Sobol {
     }
 }
 
-/// The direction numbers of a dimension as binary fractions: those of the table, and what follows from them by the
-/// recurrence of its polynomial. The first dimension halves and halves again.
+/// The direction numbers of a dimension as binary fractions: those of the table, and further ones by the recurrence of
+/// its polynomial. The first dimension is the van der Corput sequence.
 fn directions(dimension: usize) -> [u32; BITS as usize] {
     let mut found = std::array::from_fn(|bit| 1 << (BITS - 1 - bit as u32));
     let Some((coefficients, first)) = dimension.checked_sub(1).map(|row| TABLE[row]) else {

@@ -1,13 +1,14 @@
-//! Bootstrap intervals of fitted parameters: the fit repeated to data that might have been measured instead.
+//! Bootstrap intervals of fitted parameters: the fit repeated with resampled data.
 //!
-//! What is drawn has the three causes of `uncertainty`. *Scatter*: the residual of each line, of all channels and runs at once, is
-//! multiplied by a random number (wild bootstrap, Wu, "Jackknife, bootstrap and other resampling methods in regression analysis", Annals
-//! of Statistics 14, 1986). Where the scores of neighbouring lines are correlated, their numbers are, too, by Bartlett's kernel (dependent
-//! wild bootstrap, Shao, "The dependent wild bootstrap", J. Amer. Statist. Assoc. 105, 2010). *Asymmetry* and *gains*: what half the
-//! difference of two sides, and the gain of each sensor, do to the residual, each times a normal number. Only
-//! the least share of asymmetry that `uncertainty` gives to every parameter is not among them, because no data show it.
+//! The draws have the three causes of `uncertainty`. *Scatter*: the residuals of each line, in all channels and runs,
+//! are multiplied by a random number (wild bootstrap, Wu, "Jackknife, bootstrap and other resampling methods in
+//! regression analysis", Annals of Statistics 14, 1986). If the scores of neighbouring lines are correlated, so are
+//! their random numbers, with Bartlett's kernel (dependent wild bootstrap, Shao, "The dependent wild bootstrap", J.
+//! Amer. Statist. Assoc. 105, 2010). *Asymmetry* and *gains*: the change of the residual by half the difference of two
+//! sides, and by the gain error of each sensor, times a normal random number. The smallest share of asymmetry that
+//! `uncertainty` adds to every parameter is left out, because it does not come from data.
 //!
-//! Each search begins at the minimum of the fit, so an interval is about that minimum and no other.
+//! Each search begins at the minimum of the fit, so the intervals describe this minimum only.
 
 use super::cost::Cost;
 use super::report::Fit;
@@ -17,52 +18,52 @@ use super::uncertainty::{self, Line};
 use crate::least_squares::{Outcome, Problem, minimize};
 use crate::mean::{deviation, mean};
 use crate::model::Model;
-use crate::progress::{self, Told};
+use crate::progress::{self, OnProgress};
 use crate::random::SplitMix;
 use nalgebra::DVector;
 use serde::Serialize;
 
-/// What the repeated fits say.
+/// Results of the repeated fits.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Bootstrap {
-    /// How often the fit was repeated.
+    /// Number of repetitions.
     pub resamples: usize,
-    /// So many of them ended at no minimum, and do not count.
+    /// Number of repetitions without a minimum; they are left out.
     pub failed: usize,
-    /// Of each fitted parameter; none where all have failed.
+    /// Results for each fitted parameter; empty if all repetitions failed.
     pub parameters: Vec<ParameterBootstrap>,
 }
 
-/// What they say of a parameter.
+/// Results of the repeated fits for one parameter.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ParameterBootstrap {
     /// Name.
     pub name: String,
     /// Unit.
     pub unit: String,
-    /// At the minimum of the fit.
+    /// Value at the minimum of the fit.
     pub value: f64,
     /// Standard deviation of the repeated fits.
     pub stderr: f64,
-    /// Their mean less `value`.
+    /// Bias: mean of the repeated fits minus `value`.
     pub bias: f64,
-    /// Their quantiles at 2.5 and 97.5 %.
+    /// 95 % interval: their quantiles at 2.5 and 97.5 %.
     pub interval: [f64; 2],
 }
 
-/// The ends of an interval of 95 %.
+/// Quantiles at the ends of a 95 % interval.
 const ENDS: [f64; 2] = [0.025, 0.975];
 
 impl<M: Model + ?Sized> Setup<'_, M> {
-    /// Repeats a fit so many times. Each resample depends on the plan's seed and its own number alone; one by one `told` hears how far it
-    /// is.
-    pub fn bootstrap(&self, fit: &Fit, resamples: usize, told: Told<'_>) -> Bootstrap {
+    /// Repeats a fit `resamples` times. Each resample depends only on the seed of the plan and its own number.
+    /// `on_progress` receives the progress after each.
+    pub fn bootstrap(&self, fit: &Fit, resamples: usize, on_progress: OnProgress<'_>) -> Bootstrap {
         let minimum = self.minimum_of(fit);
         let drawn = Drawn::new(self, &minimum);
         let numbers: Vec<u64> = (0..resamples as u64).collect();
         let found = progress::map_with(
             &numbers,
-            told,
+            on_progress,
             || self.cost(),
             |cost, &number| {
                 let random = SplitMix::stream(self.plan.seed, number);
@@ -98,7 +99,7 @@ impl<M: Model + ?Sized> Setup<'_, M> {
     }
 }
 
-/// Of ascending values, interpolated between neighbours.
+/// Quantile of ascending values, interpolated between neighbours.
 fn quantile(values: &[f64], part: f64) -> f64 {
     let place = part * (values.len() - 1) as f64;
     let below = place as usize;
@@ -106,14 +107,14 @@ fn quantile(values: &[f64], part: f64) -> f64 {
     values[below] + (place - below as f64) * (values[above] - values[below])
 }
 
-/// What residuals at the minimum are drawn from.
+/// Causes from which residuals at the minimum are drawn.
 struct Drawn {
-    /// Those that the lines of each grid would have if they were not fitted to.
+    /// Leave-one-out residuals of the lines of each grid.
     grids: Vec<Vec<Line>>,
     rows: usize,
-    /// So many neighbours of a line are drawn together with it.
+    /// Number of neighbours whose random numbers are correlated with that of a line.
     lags: Vec<usize>,
-    /// What normal numbers multiply: errors of sides and gains.
+    /// Changes of the residual by sides and gains, each to be multiplied by a normal random number.
     patterns: Vec<DVector<f64>>,
 }
 
@@ -154,7 +155,7 @@ impl Drawn {
     }
 }
 
-/// A cost with other measured values: its residual is changed by the same everywhere.
+/// A cost with other measured values: its residual has a constant change.
 struct Changed<'c, 'm, 's, M: ?Sized> {
     cost: &'c mut Cost<'m, 's, M>,
     change: DVector<f64>,

@@ -1,33 +1,34 @@
-//! Which ratios of the measured signals to take.
+//! Ratios of the measured signals that are fitted.
 //!
 //! Thesis section 3.5.2.1: "only channels that represent motion across a physical force element (e.g., tire, bushing,
-//! damper) and have corresponding measurements". A ratio that is a product of ratios already taken tells nothing new,
-//! so the ratios form a tree over the measured places; what no link joins to it is taken from the excitation.
+//! damper) and have corresponding measurements". A ratio that is a product of other ratios adds no
+//! information, so the ratios form a tree over the measured places. A place that no link connects to the tree gets its
+//! ratio to the excitation.
 
 use crate::model::{About, Channel, Excitation, Link, Signal, SignalKind};
 
-/// The ratios to fit and, beside them, those from the excitation to each place, which are only compared.
+/// Ratios to fit, and ratios from the excitation to each place, which are only compared.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channels {
     /// Across force elements.
     pub fitted: Vec<Channel>,
-    /// From the excitation, where not fitted.
+    /// From the excitation, unless they are fitted.
     pub compared: Vec<Channel>,
 }
 
-/// The channels of `about` under an excitation for what was measured, the excitation itself among it.
+/// Channels of a model under an excitation for the `measured` signals, which include the excitation.
 pub fn across_links(about: &About, excitation: &Excitation, measured: &[Signal]) -> Channels {
     let distance = Distances::new(about, excitation);
     let mut tree = Tree::new(measured);
     let mut links: Vec<&Link> = about.links.iter().collect();
-    // A link between two places is one element; a lever among more is several, and comes after.
+    // A link between two places is one element. A lever between more places acts as several, so it comes later.
     links.sort_by_key(|link| link.ends.len());
     let mut fitted = Vec::new();
     for link in links {
         let Some(mut ends) = measured_ends(link, measured) else {
             continue;
         };
-        // Far ends first; among equals the order of the stretch, upper before lower.
+        // The farther end first; at equal distance in the order of the stretch, upper before lower.
         ends.sort_by_key(|&end| std::cmp::Reverse(distance.of(&measured[end])));
         let near = ends[ends.len() - 1];
         fitted.extend(
@@ -66,7 +67,7 @@ fn between(measured: &[Signal], near: usize, far: usize) -> Channel {
     }
 }
 
-/// True where `signal` is the motion or force that excites.
+/// True if `signal` is the excitation.
 pub fn is_excitation(excitation: &Excitation, signal: &Signal) -> bool {
     let kind = match signal.kind {
         SignalKind::Motion(_) => !excitation.force,
@@ -76,7 +77,7 @@ pub fn is_excitation(excitation: &Excitation, signal: &Signal) -> bool {
     kind && signal.location == excitation.name && signal.axis == excitation.axis
 }
 
-/// The places of a link's ends among what was measured; `None` where one of them was not, or there is only one.
+/// Positions of the ends of a link among the measured signals; `None` if one was not measured or both are the same.
 fn measured_ends(link: &Link, measured: &[Signal]) -> Option<Vec<usize>> {
     let place = |end: &str| {
         let here = |signal: &Signal| signal.location == end && signal.axis == link.axis;
@@ -88,7 +89,7 @@ fn measured_ends(link: &Link, measured: &[Signal]) -> Option<Vec<usize>> {
     (ends.len() >= 2).then_some(ends)
 }
 
-/// How many links lie between the excitation and each coordinate.
+/// Number of links between the excitation and each coordinate.
 struct Distances {
     known: Vec<(String, String, usize)>,
 }
@@ -120,7 +121,7 @@ impl Distances {
     }
 }
 
-/// Which places are already joined by ratios: a group number for each.
+/// Places connected by ratios: a group number for each.
 struct Tree {
     group: Vec<usize>,
 }
@@ -132,7 +133,7 @@ impl Tree {
         }
     }
 
-    /// Joins two places; false where they were joined already.
+    /// Connects two places; false if they are connected already.
     fn join(&mut self, a: usize, b: usize) -> bool {
         let (keep, drop) = (self.group[a], self.group[b]);
         for group in &mut self.group {

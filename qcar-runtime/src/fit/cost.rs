@@ -1,8 +1,8 @@
 //! The residual of thesis section 3.5.2.1, on logarithms: with `ln T = ln|T| + i∠T`, the magnitude error in dB is
 //! `20/ln 10` of the real part, and the phase error is the imaginary part.
 //!
-//! The phase error is taken as the smallest difference instead of that of unwrapped phases: unwrapping carries a wrong
-//! turn at one noisy line to all lines above it.
+//! The phase error is the smallest difference of the angles instead of that of unwrapped phases: if unwrapping fails at
+//! one noisy line, all lines above it are wrong by a full turn.
 
 use super::observation::Observation;
 use super::plan::{ChannelWeight, Weighting};
@@ -15,21 +15,21 @@ use crate::response::signal::Term;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::{LN_10, PI, TAU};
 
-/// The magnitude error that counts as one, dB.
+/// Magnitude error with a residual of 1, dB.
 const MAGNITUDE_SCALE: f64 = 3.0;
 
-/// The weight outside the band, as a part of that within.
+/// Weight outside the band relative to the weight inside.
 const OUTSIDE: f64 = 0.05;
 
 /// The relative random error at which a line starts to fade out.
 const FADING: f64 = 0.01;
 
-/// One measured ratio as the cost sees it. Its residuals are those of the magnitude, line after line, then the phases.
+/// One measured ratio in the cost. Its residuals are the magnitudes of all lines, then the phases.
 #[derive(Clone)]
 pub(super) struct Target {
-    /// Place in the grids.
+    /// Position of its grid.
     pub grid: usize,
-    /// The terms of numerator and denominator, by their places in the grid.
+    /// Terms of numerator and denominator, by their positions in the grid.
     pub terms: (usize, usize),
     /// Row of its first residual.
     pub first: usize,
@@ -199,7 +199,7 @@ fn subtract(into: &mut [f64], weight: &[f64], a: &[f64], b: &[f64]) {
     }
 }
 
-/// An angle brought into ±π.
+/// The angle within ±π.
 pub(super) fn smallest(angle: f64) -> f64 {
     angle - TAU * (angle / TAU).round()
 }

@@ -9,11 +9,11 @@ use crate::least_squares::{Outcome, Stop};
 use crate::model::Model;
 use nalgebra::DMatrix;
 
-/// The standard errors of parameters by their places in the model, with the plan's start values for the minimum; `None` of what
-/// the levels do not determine.
+/// Expected standard errors of the parameters at these positions in the model, with the start values of the plan as the
+/// minimum; `None` for a parameter that the levels do not determine.
 ///
 /// # Errors
-/// What [`Setup::new`] finds wrong.
+/// Fails as [`Setup::new`] does.
 pub(super) fn errors<M: Model + ?Sized>(
     model: &M,
     plan: &Plan,
@@ -27,7 +27,7 @@ pub(super) fn errors<M: Model + ?Sized>(
     Ok(asked.iter().map(error).collect())
 }
 
-/// The minimum as a search would have ended there.
+/// The result of a search that ends at the start values.
 fn at_start<M: Model + ?Sized>(setup: &Setup<'_, M>) -> Outcome {
     let x = setup.start();
     let (residual, jacobian) = setup.cost().at(&x);
@@ -45,18 +45,18 @@ fn at_start<M: Model + ?Sized>(setup: &Setup<'_, M>) -> Outcome {
     }
 }
 
-/// What levels say of parameters, each in parts of what is not known of it beforehand: their Fisher information, for weighted
-/// residuals of unit variance, and the mean square that these have.
-pub(super) struct Said {
+/// Fisher information of levels about parameters, each scaled by its prior standard deviation, for weighted residuals
+/// of unit variance; and the variance of these residuals.
+pub(super) struct Information {
     squares: DMatrix<f64>,
     variance: f64,
 }
 
-impl Said {
-    /// Of parameters by their places in the model.
+impl Information {
+    /// Information about the parameters at these positions in the model.
     ///
     /// # Errors
-    /// What [`Setup::new`] finds wrong.
+    /// Fails as [`Setup::new`] does.
     pub fn by<M: Model + ?Sized>(
         model: &M,
         plan: &Plan,
@@ -79,9 +79,9 @@ impl Said {
         })
     }
 
-    /// The log determinant of the information about some of the parameters, by their places among those asked for, with `more`
-    /// added and under what is known beforehand; all others are estimated beside them.
-    pub fn log_information(&self, more: Option<&Said>, of: &[usize]) -> f64 {
+    /// Log determinant of the information about some of the parameters, by their positions among those asked for. It
+    /// includes the priors and `more`; all other parameters count as unknown.
+    pub fn log_information(&self, more: Option<&Information>, of: &[usize]) -> f64 {
         let count = self.squares.nrows();
         let mut sum = self.squares.clone();
         more.iter().for_each(|more| sum += &more.squares);
@@ -91,14 +91,14 @@ impl Said {
     }
 }
 
-/// Of a symmetric matrix with no eigenvalue below one.
+/// Log determinant of a symmetric matrix whose eigenvalues are at least 1.
 fn log_determinant(of: &DMatrix<f64>) -> f64 {
     let factor = of.clone().cholesky().expect("the identity is part of it");
     2.0 * factor.l_dirty().diagonal().iter().map(|own| own.ln()).sum::<f64>()
 }
 
-/// What is known of each parameter before anything is measured: that it lies evenly in its range or, without one, as a standard
-/// deviation its own size.
+/// Prior standard deviation of each parameter: that of a uniform distribution over its range, or its absolute value
+/// without a range.
 fn prior<M: Model + ?Sized>(model: &M, plan: &Plan, asked: &[usize]) -> Vec<f64> {
     let deviation = |&place: &usize| {
         let own = &model.about().parameters[place];

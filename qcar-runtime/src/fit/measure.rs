@@ -1,35 +1,35 @@
-//! From the runs of a campaign to the observations of a fit.
+//! Observations of a fit from the runs of a campaign.
 
 use super::channels::{Channels, across_links, is_excitation};
 use super::observation::{Difference, Level, Observation, Pair};
 use crate::campaign::{Campaign, Channel as Sensor, History, Quantity, Run, Side, Test};
 use crate::error::{InputError, Place, Problem};
 use crate::model::{self, About, Channel, Signal, SignalKind};
-use crate::progress::{self, Told};
+use crate::progress::{self, OnProgress};
 use crate::transmissibility::{Options, Point, Related, Transmissibility, points};
 use nalgebra::Complex;
 
 /// Measures the channels of every sweep and time history of a campaign that excites the model.
 ///
-/// `wanted` names the channels to fit, as `near_to_far` of two measured places; without it they are those over the
-/// model's force elements (see [`across_links`]). Run by run `told` hears how far it is.
+/// `wanted` names the channels to fit, as `near_to_far` of two measured places; without it, they are the channels
+/// across the force elements of the model (see [`across_links`]). `on_progress` receives the progress after each run.
 ///
 /// # Errors
-/// What [`Campaign::history`] and the estimator of transmissibilities find wrong with a run, runs that record no excitation of the
-/// model, and wanted channels that were not measured.
+/// Fails if [`Campaign::history`] or the estimator of transmissibilities fails, if a run records no excitation of the
+/// model, or if a wanted channel was not measured.
 pub fn levels(
     campaign: &Campaign,
     about: &About,
     wanted: Option<&[String]>,
     options: &Options,
-    told: Told<'_>,
+    on_progress: OnProgress<'_>,
 ) -> Result<Vec<Level>, InputError> {
     let runs: Vec<&Run> = campaign
         .runs
         .iter()
         .filter(|run| matches!(run.test, Test::Sweep(_) | Test::TimeHistory(_)))
         .collect();
-    let measured = progress::map(&runs, told, |run| level(campaign, run, about, wanted, options));
+    let measured = progress::map(&runs, on_progress, |run| level(campaign, run, about, wanted, options));
     let (mut levels, mut problems) = (Vec::new(), Vec::new());
     for result in measured {
         match result {
@@ -91,11 +91,13 @@ fn level(
     })
 }
 
-/// A road moves if its mean square is this share of that of the road that moves most: a tenth of its amplitude.
+/// A road counts as moving if its mean square is at least this share of the largest: a tenth of its amplitude.
 const MOVES: f64 = 0.01;
 
+/// Checks that one road moves: a response is related to one road, as if the others were at rest.
+///
 /// # Errors
-/// Several roads that move in one run: a response is related to one of them only, as if the others were at rest.
+/// Fails if several roads move.
 fn one_road_moves(history: &History, about: &About) -> Result<(), InputError> {
     let roads = about.excitations.iter().filter(|excitation| excitation.road);
     let recorded = roads.filter_map(|road| {
@@ -119,7 +121,7 @@ fn one_road_moves(history: &History, about: &About) -> Result<(), InputError> {
     Err(Problem::new(&history.file, Place::File, found, expected, remedy).into())
 }
 
-/// The excitation of the model that a run records, and the point where it does.
+/// The excitation of the model that a run records, and the point at which it was measured.
 fn excitation(history: &History, about: &About, measured: &[Point]) -> Result<(usize, Point), InputError> {
     for (place, excitation) in about.excitations.iter().enumerate() {
         if let Some(point) = measured
@@ -147,7 +149,7 @@ fn excitation(history: &History, about: &About, measured: &[Point]) -> Result<(u
     .into())
 }
 
-/// The channels that were asked for by name; those from the excitation stand beside them.
+/// The channels with these names, and the channels from the excitation.
 fn named(
     campaign: &Campaign,
     about: &About,
@@ -192,7 +194,7 @@ fn unknown_channel(campaign: &Campaign, name: &str, measured: &[Signal]) -> Prob
     )
 }
 
-/// A measured point as the model names it.
+/// The signal of the model at a measured point.
 fn signal(about: &About, point: &Point) -> Signal {
     let axis = point.axis.name();
     let link = about
@@ -243,7 +245,7 @@ fn observation(
     }
 }
 
-/// For each pair of points, what its symmetric sensors say apart from each other.
+/// Differences between the symmetric sensors of each pair of points.
 fn differences(
     history: &History,
     reference: &Point,
@@ -275,7 +277,7 @@ fn differences(
     Ok(all)
 }
 
-/// The ratio of two points by the sensors of one side; where a point has none of its own, by those of both.
+/// The ratio of two points from the sensors of one side; a point without a sensor on that side uses those of both.
 fn ratio_of_side(side: &Related, both: &Related, (from, to): &(Point, Point)) -> impl Iterator<Item = Complex<f64>> {
     let response = |point: &Point| match side.response(point) {
         Some(own) => own.collect::<Vec<_>>(),
@@ -284,7 +286,7 @@ fn ratio_of_side(side: &Related, both: &Related, (from, to): &(Point, Point)) ->
     response(to).into_iter().zip(response(from)).map(|(to, from)| to / from)
 }
 
-/// Sensors of two sides are averaged, which means nothing where one of them has another unit or sign than the other.
+/// Checks that the sensors of two sides agree: their mean has no meaning if units or signs differ.
 fn sides_agree(
     history: &History,
     reference: &Point,
@@ -323,7 +325,7 @@ fn sides_agree(
     InputError::unless_empty(problems, Some(()))
 }
 
-/// The points that both sides have a sensor at. The reference stays the mean of its sensors: the virtual centre pad.
+/// Points with sensors on both sides. The reference stays the mean of its sensors, the virtual centre pad.
 fn doubled(history: &History, reference: &Point, sides: [Side; 2]) -> Vec<Point> {
     let has = |point: &Point, side: Side| history.signals.iter().any(|(s, _)| point.has(s) && s.side == side);
     points(history)

@@ -7,11 +7,11 @@ use nalgebra::Complex;
 /// The ratios measured in one run, all under one excitation.
 #[derive(Clone, Debug)]
 pub struct Level {
-    /// The file of the run.
+    /// File of the run.
     pub name: String,
-    /// What it may be used for.
+    /// Role of the run.
     pub role: Role,
-    /// Place in the model's excitations.
+    /// Position of the excitation in the model.
     pub excitation: usize,
     /// The ratios.
     pub observations: Vec<Observation>,
@@ -20,30 +20,29 @@ pub struct Level {
 /// A measured ratio of two signals.
 #[derive(Clone, Debug)]
 pub struct Observation {
-    /// Which ratio.
+    /// The channel.
     pub channel: Channel,
-    /// True where it enters the cost (if its run does), false where it is only compared.
+    /// True if it enters the cost of a fitted run; false if it is only compared.
     pub fitted: bool,
-    /// Hz, ascending.
+    /// Frequencies, Hz, ascending.
     pub frequency: Vec<f64>,
-    /// A value for each line.
+    /// Value at each line.
     pub value: Vec<Complex<f64>>,
-    /// `E|δT|² / |T|²` for each line, by random noise.
+    /// Relative variance `E|δT|² / |T|²` of each line by random noise.
     pub relative_variance: Vec<f64>,
-    /// Share of the power that the reference explains, for each line.
+    /// Coherence of each line: share of the power that the reference explains.
     pub coherence: Vec<f64>,
-    /// Where the excitation reached, Hz.
+    /// Band of the excitation, Hz.
     pub band: (f64, f64),
-    /// How many sensors the numerator and the denominator are means of.
+    /// Number of sensors in the mean of the numerator and of the denominator.
     pub sensors: (usize, usize),
-    /// What the sensors of a pair say apart from each other.
+    /// Differences between the sensors of each pair.
     pub differences: Vec<Difference>,
 }
 
 impl Observation {
-    /// How far the logarithm of each value may be off, to either side: two standard deviations of the noise, and half
-    /// of what the sides of the vehicle differ by. The real part is of the magnitude (neper), the imaginary one of the
-    /// phase (rad).
+    /// Uncertainty of the logarithm of each value: two standard deviations of the noise, and half the difference of the
+    /// sides of the vehicle. The real part is that of the magnitude (Np), the imaginary part that of the phase (rad).
     pub fn spread(&self) -> Vec<Complex<f64>> {
         let spread = |(line, variance): (usize, &f64)| {
             let noise = 2.0 * variance;
@@ -57,12 +56,12 @@ impl Observation {
     }
 }
 
-/// Half the logarithm of the ratio of what two symmetric sensors give, `½ ln (T_first / T_second)`.
+/// Half the logarithm of the ratio of two symmetric sensors, `½ ln (T_first / T_second)`.
 #[derive(Clone, Debug)]
 pub struct Difference {
-    /// Which pair: differences of one pair belong together across channels.
+    /// The pair. Differences of one pair belong together across channels.
     pub pair: Pair,
-    /// A value for each line.
+    /// Value at each line.
     pub half: Vec<Complex<f64>>,
 }
 

@@ -7,19 +7,19 @@ use std::path::PathBuf;
 /// The decisions of a fit.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// The file that they come from, to be named in errors.
+    /// The file with these choices, for error messages.
     pub source: PathBuf,
-    /// Start values, bounds, and which parameters are fitted.
+    /// Start values and bounds, and the choice of the fitted parameters.
     pub parameters: Vec<Parameter>,
-    /// What is known of the vehicle; parameters of the model may be among it.
+    /// Vehicle data, which may include parameters of the model.
     pub vehicle: BTreeMap<String, f64>,
     /// Weights of channels by name; the others have [`ChannelWeight::default`].
     pub channels: BTreeMap<String, ChannelWeight>,
-    /// What weights the lines.
+    /// Weighting of the lines.
     pub weighting: Weighting,
-    /// Local searches: the first from the start values, the others spread over the bounds.
+    /// Number of local searches: the first from the start values, the others spread over the bounds.
     pub starts: usize,
-    /// Shifts the spread of the other starts.
+    /// Seed of the other starts.
     pub seed: u64,
     /// Relative standard deviation of a sensor's gain, for the error bars.
     pub gain_error: f64,
@@ -30,24 +30,24 @@ pub struct Plan {
 pub struct ChannelWeight {
     /// λ: the share of the magnitude; the phase has the rest.
     pub lambda: f64,
-    /// Hz; `None`: where the excitation reached.
+    /// Band, Hz; `None` for the band of the excitation.
     pub band: Option<(f64, f64)>,
-    /// Weight within the band; outside it is 0.05 of that.
+    /// Weight inside the band; outside it is 0.05 times as large.
     pub importance: f64,
 }
 
-/// What weights the lines of a channel.
+/// Weighting of the lines of a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Weighting {
     /// The bands of the thesis alone.
     Thesis,
-    /// The bands, faded out by `1/√(1 + (σ/1 %)²)` where the random error σ of a line is larger than the 1 % that
-    /// sensors and asymmetry leave in every line: a line of no information does not count.
+    /// The bands, times `1/√(1 + (σ/1 %)²)`. This fades out lines whose random error σ exceeds the 1 % that sensors and
+    /// asymmetry cause in every line.
     Noise,
 }
 
-/// The λ at which an error of magnitude and an error of phase that are equally large in the complex plane count alike:
-/// one neper is 8.69 dB, over 3 dB; one radian is 1/π. The thesis leaves λ to the engineer.
+/// The λ that weights magnitude and phase errors of equal size in the complex plane equally: one neper is 8.69 dB over
+/// 3 dB; one radian is 1/π. The thesis leaves λ to the engineer.
 pub const BALANCED_LAMBDA: f64 = 0.099;
 
 impl Default for ChannelWeight {
@@ -61,7 +61,7 @@ impl Default for ChannelWeight {
 }
 
 impl Plan {
-    /// The plan that a campaign describes: its start values and bounds, the default weights, sixteen starts, and a
+    /// The plan of a campaign: its start values and bounds, the default weights, sixteen starts, and a
     /// gain error of 0.5 %, the class of a calibrated accelerometer.
     pub fn new(campaign: &Campaign) -> Self {
         Self {

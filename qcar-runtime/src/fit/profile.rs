@@ -1,10 +1,10 @@
-//! Profile intervals of fitted parameters: how far each may be moved until the cost, all others refitted, is too high to be
-//! chance.
+//! Profile intervals of fitted parameters: the range of each parameter in which the cost, minimised over all others,
+//! stays below the limit that chance allows.
 //!
-//! The cost is no sum of squares over known variances, so its rise is counted in units of what it says of the same parameter
-//! near the minimum: it is scaled by the ratio of the variance of `uncertainty` to that of the curvature (adjusted
-//! profile likelihood, Royall & Tsou, "Interpreting statistical evidence by using imperfect models", J. R. Stat. Soc. B 65,
-//! 2003). Where the model is as linear as its Jacobian, an interval is 1.96 standard errors to either side.
+//! The cost is not a sum of squares over known variances. So its rise is scaled such that it agrees with the standard
+//! error near the minimum: by the ratio of the variance of `uncertainty` to that of the curvature (adjusted profile
+//! likelihood, Royall & Tsou, "Interpreting statistical evidence by using imperfect models", J. R. Stat. Soc. B 65,
+//! 2003). For a linear model an interval reaches 1.96 standard errors to either side.
 
 use super::report::Fit;
 use super::search::OPTIONS;
@@ -13,13 +13,13 @@ use super::uncertainty::{self, Uncertainty};
 use crate::least_squares::Outcome;
 use crate::least_squares::profile::{Profiled, profile};
 use crate::model::Model;
-use crate::progress::{self, Told};
+use crate::progress::{self, OnProgress};
 use serde::Serialize;
 
 /// The 95 % quantile of the chi-square distribution with one degree of freedom.
 pub const QUANTILE: f64 = 3.841_458_820_694_124;
 
-/// The first step without a standard error: this part of the range or, where there is none, of the value.
+/// First step without a standard error, relative to the range, or to the value without a range.
 const FIRST: f64 = 0.02;
 
 /// The profile of a parameter.
@@ -29,20 +29,20 @@ pub struct ParameterProfile {
     pub name: String,
     /// Unit.
     pub unit: String,
-    /// At the minimum of the cost.
+    /// Value at the minimum of the cost.
     pub value: f64,
-    /// Ends of its 95 % interval; `None` where the cost does not rise enough within the range.
+    /// Ends of its 95 % interval; `None` if the cost does not rise enough within the range.
     pub interval: [Option<f64>; 2],
     /// Values, ascending, with the rise of the cost there, scaled to be chi-square distributed: 3.84 at an end.
     pub points: Vec<[f64; 2]>,
-    /// A value of the parameter with a lower cost than that of the fit, which then is no global minimum.
+    /// A value of the parameter with a lower cost than the fit, which is then not the global minimum.
     pub lower_at: Option<f64>,
 }
 
 impl<M: Model + ?Sized> Setup<'_, M> {
-    /// Profiles of fitted parameters by name; of a name that was not fitted there is none. Parameter by parameter `told` hears
-    /// how far it is.
-    pub fn profiles(&self, fit: &Fit, names: &[String], told: Told<'_>) -> Vec<ParameterProfile> {
+    /// Profiles of fitted parameters by name; names that were not fitted are left out. `on_progress` receives the
+    /// progress after each parameter.
+    pub fn profiles(&self, fit: &Fit, names: &[String], on_progress: OnProgress<'_>) -> Vec<ParameterProfile> {
         let about = &self.model.about().parameters;
         let minimum = self.minimum_of(fit);
         let uncertainty = uncertainty::estimate(self, &minimum);
@@ -52,7 +52,7 @@ impl<M: Model + ?Sized> Setup<'_, M> {
             .collect();
         progress::map_with(
             &wanted,
-            told,
+            on_progress,
             || self.cost(),
             |cost, &variable| {
                 let unit = unit(&uncertainty, &minimum, variable);
@@ -76,7 +76,7 @@ impl<M: Model + ?Sized> Setup<'_, M> {
         )
     }
 
-    /// Where a fit has ended, with residual and Jacobian.
+    /// The minimum of a fit, with residual and Jacobian.
     pub(super) fn minimum_of(&self, fit: &Fit) -> Outcome {
         let value = |&place: &usize| fit.parameters[place].value;
         self.local(&self.free.iter().map(value).collect::<Vec<_>>())
@@ -94,10 +94,11 @@ impl<M: Model + ?Sized> Setup<'_, M> {
     }
 }
 
-/// A cost that is lower by so much of a unit of chi-square is another minimum, not the same found closer.
+/// Decrease of the cost in units of chi-square beyond which a point belongs to another minimum, instead of the same
+/// minimum found more closely.
 pub const CHANCE: f64 = 0.1;
 
-/// The rise of `½ ‖r‖²` that is one unit of chi-square: of a parameter without a standard error that of the others.
+/// Rise of `½ ‖r‖²` for one unit of chi-square; for a parameter without a standard error, that of the others.
 fn unit(uncertainty: &Uncertainty, minimum: &Outcome, variable: usize) -> f64 {
     let mut others: Vec<f64> = (0..minimum.x.len()).filter_map(|k| uncertainty.inflation(k)).collect();
     others.sort_by(f64::total_cmp);

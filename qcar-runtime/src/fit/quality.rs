@@ -5,14 +5,14 @@ use super::cost::smallest;
 use nalgebra::Complex;
 use std::f64::consts::LN_10;
 
-/// Decay with the mean magnitude error, 1/dB: each dB costs about a tenth. The thesis does not tell its constant; with
-/// this one its rig fits of 79 to 92 % (table 4.1) stand for mean errors of 2.4 to 0.8 dB.
+/// Decay with the mean magnitude error, 1/dB: each dB costs about a tenth. The thesis does not give its constant; with
+/// this one its rig fits of 79 to 92 % (table 4.1) correspond to mean errors of 2.4 to 0.8 dB.
 pub const K_MAGNITUDE: f64 = 0.1;
 
-/// Decay with the r.m.s. phase error, 1/rad: an error as large in the complex plane as one dB costs as much.
+/// Decay with the RMS phase error, 1/rad: errors of equal size in the complex plane cost the same.
 pub const K_PHASE: f64 = K_MAGNITUDE * 20.0 / LN_10;
 
-/// How well a channel fits.
+/// Fit percentages and errors of a channel.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Quality {
     /// Percent.
@@ -21,7 +21,7 @@ pub struct Quality {
     pub fit_phase: f64,
     /// Weighted mean of the absolute magnitude error, dB.
     pub error_magnitude: f64,
-    /// Weighted r.m.s. of the phase error, rad.
+    /// Weighted RMS of the phase error, rad.
     pub error_phase: f64,
 }
 
@@ -56,13 +56,13 @@ fn error(model: Complex<f64>, measured: Complex<f64>) -> (f64, f64) {
     )
 }
 
-/// Each line's share of the log-frequency axis: half the way to either neighbour.
+/// Share of each line in the log-frequency axis: half the distance to either neighbour.
 fn weights(frequency: &[f64]) -> Vec<f64> {
     let last = frequency.len().saturating_sub(1);
     let width = |line: usize| (frequency[(line + 1).min(last)] / frequency[line.saturating_sub(1)]).ln();
     let widths: Vec<f64> = (0..frequency.len()).map(width).collect();
     let total: f64 = widths.iter().sum();
-    // A single line has no width, and all the weight.
+    // A single line has all the weight.
     widths
         .iter()
         .map(|width| if total > 0.0 { width / total } else { 1.0 })

@@ -4,12 +4,12 @@ use super::observation::{Difference, Observation, Pair};
 use crate::model::{Channel, Signal};
 use nalgebra::Complex;
 
-/// The motion of a place over that of the excitation, in a measured run or one that could be measured.
+/// Ratio of the motion of a place to the excitation, measured or predicted.
 #[derive(Clone)]
 pub(super) struct Record {
     pub signal: Signal,
     pub value: Vec<Complex<f64>>,
-    /// Relative variance by noise.
+    /// Relative variance of the noise.
     pub variance: Vec<f64>,
     pub differences: Vec<Difference>,
     pub sensors: usize,

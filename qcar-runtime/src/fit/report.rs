@@ -14,7 +14,7 @@ use crate::response::ratio::ratio;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Correlations from here on are reported.
+/// Smallest correlation that is reported.
 const NOTEWORTHY: f64 = 0.9;
 
 /// The result of a fit.
@@ -26,25 +26,25 @@ pub struct Fit {
     pub parameters: Vec<ParameterFit>,
     /// Pairs whose errors correlate by more than 0.9.
     pub correlations: Vec<Correlation>,
-    /// The same of every pair that the data see.
+    /// Correlation of every pair of parameters that the data determine.
     pub all_correlations: Vec<Correlation>,
     /// Every measured channel of every run, fitted or not.
     pub channels: Vec<ChannelFit>,
-    /// The thesis's objective J, the sum of squared weighted errors, at the values found.
+    /// Objective J of the thesis, the sum of squared weighted errors, at the fitted values.
     pub cost: f64,
-    /// The same at the start values.
+    /// Objective at the start values.
     pub start_cost: f64,
-    /// Why the search that found them stopped.
+    /// Stopping reason of the best search.
     pub stopped: Stop,
-    /// The same as a sentence.
+    /// Stopping reason as a sentence.
     pub stopped_because: &'static str,
-    /// True where it stopped at a minimum.
+    /// True if it stopped at a minimum.
     pub converged: bool,
-    /// Evaluations of the model by all searches together.
+    /// Number of model evaluations in all searches.
     pub evaluations: usize,
-    /// Local searches.
+    /// Number of local searches.
     pub starts: usize,
-    /// Distinct minima that they found, lowest first.
+    /// Distinct minima, lowest first.
     pub minima: Vec<LocalMinimum>,
     /// Typical relative shift of the parameters by the difference between the sides of the axle.
     pub asymmetry: f64,
@@ -57,27 +57,27 @@ pub struct ParameterFit {
     pub name: String,
     /// Unit.
     pub unit: String,
-    /// The value found, or the start value where nothing gave another.
+    /// Fitted value, or the start value if it was not estimated.
     pub value: f64,
     /// The start value.
     pub start: f64,
-    /// Bounds, where it has any.
+    /// Bounds; `None` without any.
     pub range: Option<(f64, f64)>,
-    /// True where the fit has moved it, false where it is known, tied, or seen by no channel.
+    /// True if it was fitted; false if it is known, tied, or influences no channel.
     pub fitted: bool,
     /// Standard error, in the parameter's unit.
     pub stderr: Option<f64>,
-    /// Standard error over value.
+    /// Relative standard error.
     pub relative_stderr: Option<f64>,
-    /// What the standard error is made of.
+    /// Parts of the standard error.
     pub stderr_parts: Option<StandardError>,
-    /// The bound it rests on.
+    /// The bound at which it is; `None` inside its range.
     pub at_bound: Option<Bound>,
-    /// Why there is no standard error.
+    /// Why it has no standard error; `None` if it has one.
     pub why_no_stderr: Option<NoError>,
-    /// The parameter that it takes its value from.
+    /// The parameter that it is tied to.
     pub tied_to: Option<String>,
-    /// The K&C test that gave its value, where no fitted channel depends on it.
+    /// The K&C test that gave its value, if no fitted channel depends on it.
     pub curve: Option<&'static str>,
 }
 
@@ -94,17 +94,17 @@ pub enum Bound {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "reason")]
 pub enum NoError {
-    /// It was known, and kept.
+    /// It is known.
     Known,
-    /// It takes the value of another parameter.
+    /// It is tied to another parameter.
     Tied,
-    /// It was to be fitted, but no fitted channel depends on it; it keeps its start value.
+    /// No fitted channel depends on it, so it keeps its start value.
     NotSeen,
-    /// The runs say nothing of it within its range.
+    /// The runs do not determine it within its range.
     Undetermined,
-    /// It rests on a bound, where its error is not symmetric.
+    /// It is at a bound, where its error is not symmetric.
     AtBound,
-    /// The channels see it only together with others.
+    /// The channels determine it only in combination with others.
     OnlyTogether {
         /// Names of the others.
         with: Vec<String>,
@@ -128,7 +128,7 @@ impl NoError {
     }
 }
 
-/// Two parameters whose errors go together.
+/// Two parameters with correlated errors.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Correlation {
     /// Their names.
@@ -140,27 +140,27 @@ pub struct Correlation {
 /// A channel of a run, measured and modelled.
 #[derive(Clone, Debug, Serialize)]
 pub struct ChannelFit {
-    /// `pad_to_body`.
+    /// Name, such as `pad_to_body`.
     pub name: String,
     /// The file of the run.
     pub run: String,
     /// `fit` or `held_out`.
     pub role: &'static str,
-    /// True where the cost holds it.
+    /// True if it is part of the cost.
     pub fitted: bool,
-    /// How well it fits.
+    /// Its fit percentages and errors.
     #[serde(flatten)]
     pub quality: Quality,
 }
 
-/// A minimum that local searches found.
+/// A local minimum.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LocalMinimum {
-    /// The objective J there.
+    /// Objective J at the minimum.
     pub cost: f64,
-    /// How many searches ended there.
+    /// Number of searches that ended there.
     pub starts: usize,
-    /// The fitted parameters there.
+    /// Fitted parameters at the minimum.
     pub parameters: BTreeMap<String, f64>,
 }
 

@@ -1,4 +1,4 @@
-//! Several starts within the bounds, because the cost has several local minima.
+//! Searches from several starts within the bounds, because the cost has several local minima.
 //!
 //! The starts after the first are points of the additive low-discrepancy sequence of Roberts, "The unreasonable
 //! effectiveness of quasirandom sequences" (2018): `frac(s + j α^k)`, with 1/α the root of `x^(n+1) = x + 1`. They
@@ -8,9 +8,9 @@ use super::cost::Cost;
 use super::setup::Setup;
 use crate::least_squares::{Bounds, Options, Outcome, minimize};
 use crate::model::Model;
-use crate::progress::{self, Told};
+use crate::progress::{self, OnProgress};
 
-/// What ends a local search: tight enough that searches to one minimum agree on it.
+/// Tolerances of a local search: tight enough that searches to one minimum agree.
 pub(super) const OPTIONS: Options = Options {
     gradient: 1e-8,
     cost: 1e-9,
@@ -18,18 +18,18 @@ pub(super) const OPTIONS: Options = Options {
     evaluations: 100,
 };
 
-/// Two searches found the same minimum when their costs differ by less than this part.
+/// Relative difference of costs below which two searches found the same minimum.
 const SAME_COST: f64 = 1e-5;
 
-/// All local searches.
+/// Results of all local searches.
 pub(super) struct Search {
-    /// The lowest minimum; the start itself where nothing could be searched.
+    /// The lowest minimum; the start if there are no free parameters.
     pub best: Outcome,
     /// Distinct minima, lowest first.
     pub minima: Vec<Minimum>,
-    /// Evaluations of all searches together.
+    /// Number of evaluations in all searches.
     pub evaluations: usize,
-    /// Local searches.
+    /// Number of local searches.
     pub starts: usize,
 }
 
@@ -41,7 +41,7 @@ pub(super) struct Minimum {
 }
 
 impl<M: Model + ?Sized> Setup<'_, M> {
-    /// One local search from given values of the free parameters; this is what a fit spends its time on.
+    /// One local search from these values of the free parameters. A fit spends nearly all its time here.
     pub fn local(&self, start: &[f64]) -> Outcome {
         self.search(&mut self.cost(), start)
     }
@@ -52,13 +52,18 @@ impl<M: Model + ?Sized> Setup<'_, M> {
 }
 
 impl Search {
-    pub fn run<M: Model + ?Sized>(setup: &Setup<'_, M>, told: Told<'_>) -> Self {
+    pub fn run<M: Model + ?Sized>(setup: &Setup<'_, M>, on_progress: OnProgress<'_>) -> Self {
         let points = starts(&setup.start(), &setup.bounds, setup.plan.starts.max(1), setup.plan.seed);
-        // A thread's searches share the room for responses and their logarithms.
-        let outcomes = progress::map_with(&points, told, || setup.cost(), |cost, start| setup.search(cost, start));
+        // The searches of a thread share buffers for responses and their logarithms.
+        let outcomes = progress::map_with(
+            &points,
+            on_progress,
+            || setup.cost(),
+            |cost, start| setup.search(cost, start),
+        );
         let evaluations = outcomes.iter().map(|outcome| outcome.evaluations).sum();
         let minima = distinct(&outcomes);
-        // Without any converged search the first one is reported, with why it stopped.
+        // If no search converged, the first one is reported with its stopping reason.
         let best = minima.first().map_or(0, |minimum| minimum.starts[0]);
         let starts = outcomes.len();
         let best = outcomes.into_iter().nth(best).expect("there is at least one start");
@@ -90,12 +95,12 @@ fn distinct(outcomes: &[Outcome]) -> Vec<Minimum> {
     minima
 }
 
-/// The given start, then points spread over the bounds: evenly on a logarithmic scale where both ends are positive.
-/// A variable without finite bounds keeps its start value.
+/// The given start, then points spread over the bounds, on a logarithmic scale if both bounds are positive. A variable
+/// without finite bounds keeps its start value.
 pub(crate) fn starts(given: &[f64], bounds: &Bounds, count: usize, seed: u64) -> Vec<Vec<f64>> {
     let growth = growth(given.len());
     let spread = |j: usize, k: usize| {
-        // The golden section of the seed moves the whole sequence and leaves its spread as it is.
+        // The seed times the golden section shifts the whole sequence, which keeps its spread.
         let shift = 0.5 + seed as f64 * 0.618_033_988_749_894_9;
         let part = (shift + j as f64 * growth.powi(-(k as i32 + 1))).fract();
         let (lower, upper) = (bounds.lower[k], bounds.upper[k]);
@@ -109,7 +114,7 @@ pub(crate) fn starts(given: &[f64], bounds: &Bounds, count: usize, seed: u64) ->
     std::iter::once(given.to_vec()).chain(others).collect()
 }
 
-/// The positive root of `x^(n+1) = x + 1`, by fixed-point iteration, which contracts.
+/// The positive root of `x^(n+1) = x + 1`, by a fixed-point iteration.
 fn growth(n: usize) -> f64 {
     (0..40).fold(1.5, |x: f64, _| (1.0 + x).powf(1.0 / (n as f64 + 1.0)))
 }

@@ -1,4 +1,4 @@
-//! Plan, model and measurement checked against each other; every later step of the fit is total.
+//! Checks plan, model and measurement against each other, so that no later step of the fit can fail.
 
 use super::cost::{Cost, GridPlan, Target};
 use super::observation::{Level, Observation};
@@ -12,16 +12,16 @@ use crate::response::parameters::Values;
 use crate::response::signal::{SignalError, Term, locate};
 use std::collections::BTreeMap;
 
-/// A fit that can be run.
+/// A checked fit, ready to run.
 pub struct Setup<'a, M: ?Sized> {
     pub(super) model: &'a M,
     pub(super) plan: &'a Plan,
     pub(super) levels: &'a [Level],
     /// Start values of all parameters.
     pub(super) values: Values,
-    /// The parameters that are fitted: asked for, and seen by a channel.
+    /// The fitted parameters: those to fit on which a channel depends.
     pub(super) free: Vec<usize>,
-    /// The parameters that were asked for but that no channel sees.
+    /// Parameters to fit on which no channel depends.
     pub(super) unseen: Vec<usize>,
     pub(super) bounds: Bounds,
     pub(super) grids: Vec<GridPlan>,
@@ -34,8 +34,8 @@ impl<'a, M: Model + ?Sized> Setup<'a, M> {
     /// Checks a plan and measurements against a model.
     ///
     /// # Errors
-    /// Parameters that the model lacks or that have no value or another unit, starts outside their range, signals
-    /// that the model cannot give, and a campaign without anything to fit to; all that apply, at once.
+    /// Fails if a parameter is not in the model, has no value, another unit, or a start outside its range, if the model
+    /// lacks a signal, or if the campaign has no data to fit. Reports all errors at once.
     pub fn new(model: &'a M, plan: &'a Plan, levels: &'a [Level]) -> Result<Self, InputError> {
         let mut problems = check_parameters(model, plan);
         let values = resolve(model, plan).map_err(|found| problems.extend(found)).ok();
@@ -65,7 +65,7 @@ impl<'a, M: Model + ?Sized> Setup<'a, M> {
         })
     }
 
-    /// The start values of the free parameters, in the order that [`Setup::local`] takes them.
+    /// Start values of the free parameters, in the order of [`Setup::local`].
     pub fn start(&self) -> Vec<f64> {
         start(&self.values, &self.free)
     }
@@ -75,7 +75,7 @@ impl<'a, M: Model + ?Sized> Setup<'a, M> {
         self.values.as_slice()
     }
 
-    /// Places of the free parameters in the model.
+    /// Positions of the free parameters in the model.
     pub fn free(&self) -> &[usize] {
         &self.free
     }
@@ -100,7 +100,7 @@ fn resolve<M: Model + ?Sized>(model: &M, plan: &Plan) -> Result<Values, Vec<Prob
         .map_err(|errors| errors.iter().map(|error| error.problem(&plan.source)).collect())
 }
 
-/// Units and ranges of the start values.
+/// Checks units and ranges of the start values.
 fn check_parameters<M: Model + ?Sized>(model: &M, plan: &Plan) -> Vec<Problem> {
     let problem = |name: &str, found: String, expected: String, remedy: &str| {
         Problem::new(
@@ -141,7 +141,7 @@ fn check_parameters<M: Model + ?Sized>(model: &M, plan: &Plan) -> Vec<Problem> {
     problems
 }
 
-/// The parameters that the plan wants fitted, in the order of the model.
+/// The parameters to fit, in the order of the model.
 fn asked_for<M: Model + ?Sized>(model: &M, plan: &Plan) -> Vec<usize> {
     let wanted = |name: &str| plan.parameters.iter().any(|given| given.fit && given.name == name);
     let parameters = model.about().parameters.iter().enumerate();

@@ -1,7 +1,7 @@
 //! A run as the fitted model expects it: with another sensor, another excitation, once more, or beyond its band.
 //!
-//! An added sensor is assumed to have the noise of sensors of its kind in the same run, or else their relative noise. The
-//! model's misfit is assumed to be the same for all channels.
+//! An added sensor is assumed to have the noise of sensors of its kind in the same run, or else their relative noise.
+//! The model's misfit is assumed to be the same for all channels.
 
 use super::channels::{across_links, is_excitation};
 use super::observation::{Level, Observation};
@@ -12,7 +12,7 @@ use crate::response::parameters::Values;
 use crate::response::ratio::ratio;
 use nalgebra::Complex;
 
-/// A run as the model predicts it.
+/// A run as the fitted model predicts it.
 pub(super) struct Run<'a, M: ?Sized> {
     model: &'a M,
     values: &'a Values,
@@ -50,7 +50,7 @@ impl<'a, M: Model + ?Sized> Run<'a, M> {
             records: observed.iter().map(record).collect(),
             misfit: 0.0,
         };
-        run.misfit = run.missed();
+        run.misfit = run.misfit_variance();
         Some(run)
     }
 
@@ -79,14 +79,14 @@ impl<'a, M: Model + ?Sized> Run<'a, M> {
         };
         let records = signals.into_iter().filter_map(|signal| {
             let value = run.response(&signal, &run.frequency)?;
-            Some(run.expected(signal, value, self.usual_variance(), self.misfit))
+            Some(run.expected(signal, value, self.mean_variance(), self.misfit))
         });
         let records: Vec<Record> = records.collect();
         (!records.is_empty()).then(|| run.assembled(&records, &run.frequency))
     }
 
     /// Mean square of the logarithmic residuals over lines and places, less the variance of noise.
-    fn missed(&self) -> f64 {
+    fn misfit_variance(&self) -> f64 {
         let lines = self.records.iter().flat_map(|record| {
             let model = self.response(&record.signal, &self.frequency).unwrap_or_default();
             let pairs = record.value.iter().zip(model);
@@ -107,7 +107,7 @@ impl<'a, M: Model + ?Sized> Run<'a, M> {
     }
 
     /// Mean relative variance of the records at each line.
-    fn usual_variance(&self) -> Vec<f64> {
+    fn mean_variance(&self) -> Vec<f64> {
         let mean =
             |line: usize| self.records.iter().map(|own| own.variance[line]).sum::<f64>() / self.records.len() as f64;
         (0..self.frequency.len()).map(mean).collect()
@@ -152,7 +152,7 @@ impl<'a, M: Model + ?Sized> Run<'a, M> {
             .filter(|own| own.signal.kind == signal.kind)
             .collect();
         if alike.is_empty() {
-            return self.usual_variance();
+            return self.mean_variance();
         }
         let noise = |line: usize| {
             let squares = alike.iter().map(|own| own.variance[line] * own.value[line].norm_sqr());
@@ -219,7 +219,7 @@ impl<'a, M: Model + ?Sized> Run<'a, M> {
             let records: Option<Vec<Record>> = self
                 .records
                 .iter()
-                .map(|own| self.beyond(own, &frequency, from))
+                .map(|own| self.extended(own, &frequency, from))
                 .collect();
             Some((what, self.assembled(&records?, &frequency)))
         };
@@ -227,7 +227,7 @@ impl<'a, M: Model + ?Sized> Run<'a, M> {
     }
 
     /// A record at other frequencies, with the noise at the nearest end of its band.
-    fn beyond(&self, own: &Record, frequency: &[f64], from: f64) -> Option<Record> {
+    fn extended(&self, own: &Record, frequency: &[f64], from: f64) -> Option<Record> {
         /// Number of lines at an end of the band whose noise is used beyond it.
         const NEAR: usize = 10;
         let count = own.value.len();
@@ -282,7 +282,7 @@ pub(super) fn quantity(kind: SignalKind) -> &'static str {
     }
 }
 
-/// A seed that depends on the place of a signal alone.
+/// A seed that depends only on the name of a signal.
 fn seed(signal: &Signal) -> u64 {
     let name = signal.location.bytes().chain(signal.axis.bytes());
     name.fold(14_695_981_039_346_656_037, |hash, byte| {

@@ -2,14 +2,14 @@
 //!
 //! The covariance is the sum of three parts, all propagated through the Jacobian at the optimum:
 //!
-//! 1. *Scatter*: what the residuals show, `(JᵀJ)⁻¹ S (JᵀJ)⁻¹` with S the sum of outer products of the scores of the
+//! 1. *Scatter*, from the residuals: `(JᵀJ)⁻¹ S (JᵀJ)⁻¹` with S the sum of outer products of the scores of the
 //!    lines. All channels and runs at one line are one cluster; neighbouring lines may be correlated (Newey & West,
 //!    "A simple, positive semi-definite, heteroskedasticity and autocorrelation consistent covariance matrix",
-//!    Econometrica 55, 1987). So noise of any colour and smooth misfit of the model both count.
-//! 2. *Asymmetry*: the two sides of an axle differ, and the model stands for their mean. Half the difference of what
-//!    the two sides say moves the parameters by about one standard deviation of that mean. It is a sample of one, so
-//!    no parameter gets less than the typical relative shift, over all parameters that are well determined otherwise.
-//! 3. *Gains*: each sensor's gain is wrong by a constant that no residual need show.
+//!    Econometrica 55, 1987). So both noise of any spectrum and a smooth misfit of the model count.
+//! 2. *Asymmetry*: the two sides of an axle differ, and the model stands for their mean. Half the difference of
+//!    the two sides shifts the parameters by about one standard deviation of that mean. It is a single sample, so no
+//!    parameter gets less than the typical relative shift of all parameters that are well determined otherwise.
+//! 3. *Gains*: the gain of each sensor has a constant error, which may not appear in the residuals.
 
 use super::observation::Pair;
 use super::setup::Setup;
@@ -18,13 +18,13 @@ use crate::least_squares::information::{Information, Unseen, correlation};
 use crate::model::{Model, Signal};
 use nalgebra::{Complex, DMatrix, DVector};
 
-/// What is known of the errors of the free parameters.
+/// Errors of the free parameters.
 pub(super) struct Uncertainty {
     information: Information,
-    /// Variances of the seen parameters by cause: scatter, asymmetry, gains.
+    /// Variances of the determined parameters by cause: scatter, asymmetry, gains.
     parts: [DVector<f64>; 3],
     covariance: DMatrix<f64>,
-    /// Typical relative shift by asymmetry; zero where no two sides were measured.
+    /// Typical relative shift by asymmetry; zero if only one side was measured.
     pub asymmetry: f64,
 }
 
@@ -60,14 +60,14 @@ pub(super) fn estimate<M: Model + ?Sized>(setup: &Setup<'_, M>, outcome: &Outcom
     }
 }
 
-/// What the Jacobian tells of the variables that are off their bounds.
+/// Information of the Jacobian about the variables inside their bounds.
 pub(super) fn information(outcome: &Outcome) -> Information {
     let free: Vec<bool> = outcome.at_bound.iter().map(|&bound| bound == 0).collect();
     Information::new(&outcome.jacobian, &free)
 }
 
 impl Uncertainty {
-    /// The standard error of a free parameter, where it has one.
+    /// Standard error of a free parameter; `None` if it has none.
     pub fn standard_error(&self, variable: usize) -> Option<StandardError> {
         let place = self.information.seen().iter().position(|&k| k == variable)?;
         let part = |k: usize| self.parts[k][place].max(0.0).sqrt();
@@ -80,19 +80,19 @@ impl Uncertainty {
         })
     }
 
-    /// The variance of a free parameter over that of independent residuals of unit variance, where it has one.
+    /// Variance of a free parameter over that for independent residuals of unit variance; `None` if it has none.
     pub fn inflation(&self, variable: usize) -> Option<f64> {
         let place = self.information.seen().iter().position(|&k| k == variable)?;
         Some(self.covariance[(place, place)] / self.information.inverse()[(place, place)])
     }
 
-    /// Why a free parameter has none, where it is off its bounds.
+    /// Why a free parameter inside its bounds has no standard error; `None` if it has one.
     pub fn unseen(&self, variable: usize) -> Option<&Unseen> {
         self.information.unseen(variable)
     }
 
-    /// Pairs of free parameters that the channels tell apart badly: those whose estimates correlate by more than
-    /// `least` under independent residuals, with their correlation.
+    /// Pairs of free parameters whose estimates correlate by more than `least` under independent residuals, with their
+    /// correlation.
     pub fn correlations(&self, least: f64) -> Vec<(usize, usize, f64)> {
         let seen = self.information.seen();
         let matrix = correlation(self.information.inverse());
@@ -104,8 +104,8 @@ impl Uncertainty {
     }
 }
 
-/// Lines as independent clusters; correlation of neighbours makes a variance larger where it is found, and never
-/// smaller: at the optimum the scores sum to zero, which resembles negative correlation.
+/// Covariance with lines as independent clusters. A correlation of neighbours may only increase a variance: at the
+/// optimum the scores sum to zero, which looks like a negative correlation.
 fn scatter<M: Model + ?Sized>(setup: &Setup<'_, M>, outcome: &Outcome, information: &Information) -> DMatrix<f64> {
     let count = information.seen().len();
     let [covariance, long_run] = of_lines(setup, outcome, information);
@@ -142,7 +142,7 @@ fn of_lines<M: Model + ?Sized>(
     sums.map(|sum| information.inverse() * sum * information.inverse())
 }
 
-/// True where correlation of neighbouring lines makes the variances larger, in the mean of all parameters.
+/// True if a correlation of neighbouring lines increases the variances, in the mean of all parameters.
 pub(super) fn are_neighbours_correlated<M: Model + ?Sized>(
     setup: &Setup<'_, M>,
     outcome: &Outcome,
@@ -153,21 +153,20 @@ pub(super) fn are_neighbours_correlated<M: Model + ?Sized>(
     growth.iter().any(|growth| growth.is_finite()) && growth.mean() > 1.0
 }
 
-/// A line of a grid, in all channels and runs that have it.
+/// A line of a grid, in all channels and runs with this line.
 pub(super) struct Line {
-    /// Its residuals' rows.
+    /// Rows of its residuals.
     pub rows: Vec<usize>,
-    /// What they would be if the line were not fitted to.
+    /// Leave-one-out residuals: those of a fit without this line.
     pub residual: DVector<f64>,
     slopes: DMatrix<f64>,
 }
 
 /// The lines of a grid.
 ///
-/// The residuals are those that the line would have if it were not fitted to, `(1 − H)⁻¹ r` with its block H of the
-/// projection (CR3, MacKinnon & White, "Some heteroskedasticity-consistent covariance matrix estimators with improved
-/// finite sample properties", J. Econometrics 29, 1985): the few lines at a resonance decide on a parameter, and the
-/// fit goes through them.
+/// The residuals are those of a fit without the line, `(1 − H)⁻¹ r` with its block H of the projection (CR3, MacKinnon
+/// & White, "Some heteroskedasticity-consistent covariance matrix estimators with improved finite sample properties",
+/// J. Econometrics 29, 1985): the few lines at a resonance determine a parameter, so the fit passes through them.
 pub(super) fn unfitted<M: Model + ?Sized>(
     setup: &Setup<'_, M>,
     outcome: &Outcome,
@@ -182,14 +181,14 @@ pub(super) fn unfitted<M: Model + ?Sized>(
         let slopes = outcome.jacobian.select_rows(&rows).select_columns(information.seen());
         let residual = outcome.residual.select_rows(&rows);
         let free = DMatrix::identity(rows.len(), rows.len()) - &slopes * information.inverse() * slopes.transpose();
-        // A line that alone decides on a parameter has no residual of its own.
+        // A line that alone determines a parameter has no residual.
         let residual = free.lu().solve(&residual).unwrap_or(residual);
         Line { rows, residual, slopes }
     };
     (0..setup.grids[grid].frequency.len()).map(of_line).collect()
 }
 
-/// How many neighbours of a line may be correlated with it.
+/// Number of neighbours of a line that may be correlated with it.
 pub(super) fn lags(lines: usize) -> usize {
     ((lines as f64).sqrt() as usize).min(lines.saturating_sub(1))
 }
@@ -207,7 +206,7 @@ fn long_run(scores: &DMatrix<f64>) -> DMatrix<f64> {
     sum
 }
 
-/// The covariance by asymmetry, and the typical relative shift; `others` are the variances by the other causes.
+/// Covariance by asymmetry, and the typical relative shift; `others` are the variances by the other causes.
 fn asymmetry<M: Model + ?Sized>(
     setup: &Setup<'_, M>,
     outcome: &Outcome,
@@ -227,7 +226,7 @@ fn asymmetry<M: Model + ?Sized>(
     (covariance, typical)
 }
 
-/// The r.m.s. of the relative shifts, each weighted by how little else moves its parameter.
+/// RMS of the relative shifts. A parameter with small variances by other causes has a larger weight.
 fn typical_shift(squares: &DVector<f64>, others: &DVector<f64>, x: &DVector<f64>) -> f64 {
     let precision = x.zip_map(others, |x, other| x * x / other.max(f64::MIN_POSITIVE));
     let relative = squares.zip_map(x, |square, x| square / (x * x));
@@ -248,7 +247,8 @@ fn gains<M: Model + ?Sized>(setup: &Setup<'_, M>, outcome: &Outcome, information
     covariance
 }
 
-/// What normal numbers multiply in the residual: half of what each pair of sides differs by, and the gain error of each signal.
+/// Changes of the residual to be multiplied by normal random numbers: half the difference of each pair of sides, and
+/// the gain error of each signal.
 pub(super) fn patterns<M: Model + ?Sized>(setup: &Setup<'_, M>) -> Vec<DVector<f64>> {
     of_sides(setup).chain(of_gains(setup)).collect()
 }
@@ -300,7 +300,7 @@ fn signals<'a, M: Model + ?Sized>(setup: &'a Setup<'_, M>) -> Vec<&'a Signal> {
     all
 }
 
-/// What an error of the measured logarithms, given by target and line, does to the residual.
+/// Change of the residual by an error of the measured logarithms, given by target and line.
 fn pattern<M: Model + ?Sized>(setup: &Setup<'_, M>, error: impl Fn(usize, usize) -> Complex<f64>) -> DVector<f64> {
     let rows = setup.targets.iter().map(|target| 2 * target.lines()).sum();
     let mut pattern = DVector::zeros(rows);

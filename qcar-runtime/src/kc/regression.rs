@@ -1,17 +1,17 @@
-//! Linear least squares in three unknowns that give outliers less weight, with standard errors.
+//! Linear least squares in three unknowns with robust weights and standard errors.
 
 use super::KcError;
 use nalgebra::{Matrix3, Vector3};
 
 /// A value and its standard error (one standard deviation), in one unit.
 ///
-/// The standard error is that of the scatter alone. A rig's scale factor may be wrong as well, alike in all samples;
-/// [`Estimate::uncertainty`] holds both.
+/// The standard error is that of the scatter alone. [`Estimate::uncertainty`] includes the scale error of a rig, which
+/// is the same in all samples.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Estimate {
     /// Best estimate.
     pub value: f64,
-    /// From the scatter of the samples around the fit, widened for scatter that is alike in neighbours.
+    /// Standard error from the scatter of the samples, increased for correlated neighbours.
     pub standard_error: f64,
 }
 
@@ -24,9 +24,10 @@ impl Estimate {
 
 /// Relative standard uncertainty of a rig's scale factors.
 const SCALE_UNCERTAINTY: f64 = 0.005;
-/// Residuals beyond so many standard deviations count less (Huber 1964: 95 % efficient for normal scatter).
+/// Residuals beyond this number of standard deviations have less weight (Huber 1964: 95 % efficient for normal
+/// scatter).
 const TUNING: f64 = 1.345;
-/// A normal distribution's standard deviation over the median of its magnitudes.
+/// Ratio of the standard deviation of a normal distribution to the median of its absolute values.
 const DEVIATION_PER_MEDIAN: f64 = 1.4826;
 const ITERATIONS: usize = 30;
 const FEWEST: usize = 20;
@@ -68,7 +69,7 @@ fn solve(rows: &[[f64; 4]], weights: &[f64]) -> Result<(Vector3<f64>, Matrix3<f6
         normal += weight * scaled * scaled.transpose();
         right += weight * row[3] * scaled;
     }
-    // A column without any size, or two that are multiples of each other, leave nothing to factorise.
+    // A column of zeros, or two proportional columns, make the matrix singular.
     let factor = normal.cholesky().ok_or(KcError::OneWay)?;
     let inverse = factor.inverse().component_div(&(scale * scale.transpose()));
     if inverse.iter().any(|value| !value.is_finite()) {
@@ -93,8 +94,8 @@ fn median_size(residuals: &[f64]) -> f64 {
     sizes[sizes.len() / 2]
 }
 
-/// Variance of the scatter as it counts for a mean: neighbours with a correlation ρ carry less news of their own, by
-/// `(1 - ρ)/(1 + ρ)`.
+/// Variance of the scatter for a mean: neighbours with a correlation ρ carry less independent information, by `(1 -
+/// ρ)/(1 + ρ)`.
 fn variance(residuals: &[f64], weights: &[f64]) -> f64 {
     let sum: f64 = residuals.iter().zip(weights).map(|(r, w)| w * r * r).sum();
     let squares: f64 = residuals.iter().map(|r| r * r).sum();

@@ -1,8 +1,7 @@
-//! A model on a K&C rig: its body is clamped, its wheel is moved slowly, and the force on the wheel is measured.
+//! A model on a K&C rig: the body is clamped, the wheel is moved slowly, and the force on the wheel is measured.
 //!
-//! All else moves as it must: sub-frame, powertrain and top mount yield to what the wheel pulls on. So the gradient at
-//! the wheel is that of several links in series, and a parameter is found from a measured gradient by asking for which
-//! value the model has it.
+//! Sub-frame, powertrain and top mount yield to the forces on them. So the gradient at the wheel is that of several
+//! links in series, and a parameter is found as the value for which the model has the measured gradient.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -11,7 +10,7 @@ use crate::model::{About, Contact, InputKind, Matrix, Model, StateKind};
 use crate::response::parameters::Values;
 use crate::roles::{OnRig, state};
 
-/// Which gradient of the force on the wheel is meant.
+/// Gradient of the force on the wheel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slope {
     /// Over displacement, N/m.
@@ -20,7 +19,8 @@ pub enum Slope {
     Damping,
 }
 
-/// rad/s: so slow that masses weigh nothing (a wheel some 1e-6 of its spring), and that dampers still show.
+/// Angular frequency, rad/s: so low that inertia is negligible (1e-6 of the wheel's spring), and that damper forces are
+/// still resolved.
 const SLOW: f64 = 0.06;
 /// Range of the search for a parameter without bounds, as a factor of its value.
 const REACH: f64 = 100.0;
@@ -28,8 +28,8 @@ const HALVINGS: usize = 60;
 
 /// The gradient of the force on the wheel, moved along `axis` with the body held.
 ///
-/// The model is linearised at rest, and inner states of laws stay at zero: friction is no gradient. Its road moves with
-/// the wheel. `None` where one of both does not move along the axis, or where no force can be put on the wheel.
+/// The model is linearised at rest, and inner states of laws stay at zero, since friction is no gradient. The road
+/// moves with the wheel. `None` if wheel or body does not move along the axis, or if no force can act on the wheel.
 pub fn gradient<M: Model + ?Sized>(model: &M, p: &[f64], on: &OnRig, axis: &str, slope: Slope) -> Option<f64> {
     let force = Rig::new(model, p, on, axis)?.force()?;
     let found = match slope {
@@ -39,10 +39,10 @@ pub fn gradient<M: Model + ?Sized>(model: &M, p: &[f64], on: &OnRig, axis: &str,
     found.is_finite().then_some(found)
 }
 
-/// The value of a parameter with which a model has the `measured` gradient, all others as they are in `values`.
+/// Value of a parameter for which a model has the `measured` gradient, with all others as in `values`.
 ///
-/// It is sought within the parameter's bounds; the gradient is taken to grow with it. `None` where [`gradient`] says
-/// nothing or no value within reach gives what was measured.
+/// It is searched within the bounds of the parameter, assuming that the gradient increases with it. `None` if
+/// [`gradient`] gives none, or if no value within the bounds gives the measured one.
 pub fn value_for<M: Model + ?Sized>(
     model: &M,
     values: &Values,
@@ -75,10 +75,10 @@ pub fn value_for<M: Model + ?Sized>(
     Some(0.5 * (low + high))
 }
 
-/// The parameter that a measured gradient gives: of those in the laws of the links at the wheel, other than its tyre, the
-/// one on which the model's gradient depends most. A parameter that is known, or that follows another, is none.
+/// The parameter that a measured gradient determines: of those in the laws of the links at the wheel, except the tyre,
+/// the one with the largest influence on the gradient of the model. Known and tied parameters are left out.
 ///
-/// `None` where [`gradient`] says nothing, or depends on none of them.
+/// `None` if [`gradient`] gives none, or depends on none of them.
 pub fn parameter_for<M: Model + ?Sized>(
     model: &M,
     values: &Values,
@@ -99,7 +99,7 @@ pub fn parameter_for<M: Model + ?Sized>(
     most.map(|(parameter, _)| parameter)
 }
 
-/// Relative change of a parameter to see what it does, and the least relative change of a gradient for that of one.
+/// Relative change of a parameter for its influence, and the smallest relative change of a gradient that counts.
 const STEP: f64 = 1e-3;
 const LEAST_SHARE: f64 = 1e-3;
 
@@ -119,8 +119,8 @@ fn at_wheel(about: &About, values: &Values, on: &OnRig, axis: &str) -> Vec<usize
     own
 }
 
-/// What a force of one on a mass along an axis changes of `dx/dt` at rest: of the tyre's contact where it carries that
-/// mass, else of a force input of the model. `None` where neither acts on it.
+/// Change of `dx/dt` at rest by a unit force on a mass along an axis: by the contact of the tyre if it carries that
+/// mass, otherwise by a force input of the model. `None` if neither acts on it.
 pub(crate) fn of_unit_force<M: Model + ?Sized>(model: &M, p: &[f64], mass: &str, axis: &str) -> Option<Vec<f64>> {
     let about = model.about();
     let velocity = state(about, StateKind::Velocity, mass, axis)?;
@@ -158,17 +158,17 @@ pub(crate) fn of_unit_force<M: Model + ?Sized>(model: &M, p: &[f64], mass: &str,
     found.find(|of_unit| of_unit[velocity] != 0.0)
 }
 
-/// A linear model `dx/dt = A x + B u` with its wheel moved by one.
+/// A linear model `dx/dt = A x + B u` with a unit displacement of its wheel.
 struct Rig<'a> {
     about: &'a About,
     a: DMatrix<Complex<f64>>,
     b: DMatrix<Complex<f64>>,
     axis: &'a str,
-    /// The acceleration of the wheel for a force of one.
+    /// Acceleration of the wheel by a unit force.
     of_unit: f64,
     /// Velocity of the wheel.
     moved: usize,
-    /// What the rig prescribes of each state; `None` where it is free.
+    /// Motion that the rig prescribes for each state; `None` if the state is free.
     prescribed: Vec<Option<Complex<f64>>>,
 }
 
@@ -205,7 +205,7 @@ impl<'a> Rig<'a> {
         })
     }
 
-    /// The complex force on the wheel for a displacement of one; `None` where something would move without end.
+    /// Complex force on the wheel for a unit displacement; `None` if the matrix is singular.
     fn force(&self) -> Option<Complex<f64>> {
         let prescribed = &self.prescribed;
         let free: Vec<usize> = (0..prescribed.len()).filter(|&i| prescribed[i].is_none()).collect();
@@ -221,7 +221,7 @@ impl<'a> Rig<'a> {
         Some(missing(&x)[self.moved] / self.of_unit)
     }
 
-    /// The road moves with the wheel; nothing else acts.
+    /// Input of the road, which moves with the wheel; all others are zero.
     fn inputs(&self) -> DVector<Complex<f64>> {
         let value = |kind: InputKind| match kind {
             InputKind::Motion(excitation, quantity) => {

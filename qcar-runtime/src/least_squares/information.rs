@@ -1,48 +1,50 @@
-//! What the Jacobian at the optimum tells about the parameters: covariance, correlation, and undetermined directions.
+//! Information of the Jacobian at the optimum about the parameters: covariance, correlation, and undetermined
+//! directions.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::normal::products;
 
-/// Singular values of the scaled Jacobian below this part of the largest one count as zero: no measurement has the
-/// seven digits that it would take to see such a direction.
+/// Singular values of the scaled Jacobian below this share of the largest count as zero: no measurement has the seven
+/// digits that such a direction would need.
 const RANK_TOLERANCE: f64 = 1e-7;
 
-/// The trace of the inverse of the scaled normal equations that leaves ten digits of it. No singular value of the scaled Jacobian is then
-/// below `1e-3`, far above the tolerance of the rank: its reciprocal square is an eigenvalue of that inverse.
+/// Largest trace of the inverse of the scaled normal equations for which ten digits of it are accurate. Every singular
+/// value of the scaled Jacobian is then above `1e-3`, far above the tolerance of the rank, since its reciprocal square
+/// is an eigenvalue of that inverse.
 const LARGEST_TRACE: f64 = 1e6;
 
-/// A variable takes part in an unseen direction when its component is at least this large.
+/// Smallest component of a variable in an undetermined direction for which it takes part.
 const TAKES_PART: f64 = 1e-3;
 
-/// Why a variable has no error bar.
+/// Reason why a variable has no standard error.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 #[serde(rename_all = "snake_case", tag = "kind")]
 pub enum Unseen {
     /// No residual depends on it.
     Nowhere,
-    /// The residuals depend on it only together with these others.
+    /// The residuals depend on it only in combination with others.
     Combination {
-        /// Places of the others.
+        /// Positions of the others.
         with: Vec<usize>,
     },
 }
 
-/// The linearised problem at its optimum, restricted to the variables that are off their bounds.
+/// The linearised problem at its optimum, for the variables inside their bounds.
 pub struct Information {
-    /// Places of the variables that are seen, each by itself.
+    /// Positions of the variables that are determined individually.
     seen: Vec<usize>,
-    /// Why each other variable is not.
+    /// Reason for each other variable.
     unseen: Vec<Option<Unseen>>,
     /// `(JᵀJ)⁻¹` of the seen variables.
     inverse: DMatrix<f64>,
 }
 
 impl Information {
-    /// Decomposes `jacobian`; the variables outside `free` are held.
+    /// Decomposes `jacobian`; variables outside `free` are fixed.
     ///
-    /// Columns are scaled to unit length. Where their normal equations are not well conditioned, they are reduced by QR; the rank is that
-    /// of the singular values of R.
+    /// Columns are scaled to unit length. If their normal equations are badly conditioned, they are reduced by QR, and
+    /// the rank is that of the singular values of R.
     pub fn new(jacobian: &DMatrix<f64>, free: &[bool]) -> Self {
         let mut unseen: Vec<Option<Unseen>> = vec![None; free.len()];
         let mut columns: Vec<usize> = (0..free.len()).filter(|&k| free[k]).collect();
@@ -69,12 +71,12 @@ impl Information {
         Self { seen, unseen, inverse }
     }
 
-    /// Why a variable has no error bar; `None` where it has one, or is held.
+    /// Why a variable has no standard error; `None` if it has one or is fixed.
     pub fn unseen(&self, variable: usize) -> Option<&Unseen> {
         self.unseen[variable].as_ref()
     }
 
-    /// Places of the variables with an error bar, in the order of the matrices and vectors below.
+    /// Positions of the variables with a standard error, in the order of the matrices and vectors below.
     pub fn seen(&self) -> &[usize] {
         &self.seen
     }
@@ -84,7 +86,7 @@ impl Information {
         &self.inverse
     }
 
-    /// How far the optimum moves when the residual is changed by `pattern`, to first order: `-(JᵀJ)⁻¹ Jᵀ pattern`.
+    /// Change of the optimum, to first order, if the residual changes by `pattern`: `-(JᵀJ)⁻¹ Jᵀ pattern`.
     pub fn shift(&self, jacobian: &DMatrix<f64>, pattern: &DVector<f64>) -> DVector<f64> {
         -(&self.inverse * self.project(jacobian, pattern))
     }
@@ -106,8 +108,8 @@ pub fn correlation(covariance: &DMatrix<f64>) -> DMatrix<f64> {
     })
 }
 
-/// `(JᵀJ)⁻¹` of these columns by Cholesky's factor, at a fraction of the cost of singular values; `None` if some direction may be
-/// unseen, or digits would be lost.
+/// `(JᵀJ)⁻¹` of these columns by a Cholesky factor, which is much cheaper than singular values; `None` if a direction
+/// may be undetermined or digits would be lost.
 fn well_determined(jacobian: &DMatrix<f64>, columns: &[usize]) -> Option<DMatrix<f64>> {
     let columns: Vec<&[f64]> = columns.iter().map(|&k| jacobian.column(k).data.into_slice()).collect();
     let products = products(&columns);
@@ -168,7 +170,7 @@ impl Directions {
         (0..self.values.len()).filter(|&d| self.values[d] <= self.tolerance)
     }
 
-    /// The variables of each unseen direction, each with the others that take part.
+    /// The variables of each undetermined direction, each with the others that take part.
     fn combinations(&self, columns: &[usize]) -> Vec<(usize, Vec<usize>)> {
         let takes_part = |d: usize, place: usize| self.vectors[(d, place)].abs() >= TAKES_PART;
         let partners = |place: usize| -> Vec<usize> {
@@ -182,7 +184,7 @@ impl Directions {
         unseen.map(|place| (columns[place], partners(place))).collect()
     }
 
-    /// `(JᵀJ)⁻¹` over the directions that are seen, for the rows and columns of `seen`.
+    /// `(JᵀJ)⁻¹` over the determined directions, for the rows and columns of `seen`.
     fn inverse(&self, columns: &[usize], seen: &[usize]) -> DMatrix<f64> {
         let places: Vec<usize> = (0..columns.len())
             .filter(|&place| seen.contains(&columns[place]))

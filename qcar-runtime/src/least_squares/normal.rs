@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::vectors::{Loops, widest};
 
-/// Rows of the Jacobian that are taken at once: twenty columns of them stay in a first-level cache.
+/// Rows of the Jacobian in one block: twenty columns of them fit in a first-level cache.
 const BLOCK: usize = 192;
 
 /// The normal equations of a linearised problem.
@@ -13,9 +13,9 @@ pub(super) struct NormalEquations {
     pub matrix: DMatrix<f64>,
     /// `Jᵀr`.
     pub gradient: DVector<f64>,
-    /// The largest norm that each column ever had.
+    /// Largest norm of each column so far.
     pub largest: DVector<f64>,
-    /// One over it; 1 for a column that was always zero.
+    /// Its reciprocal; 1 for a column that was always zero.
     pub scale: DVector<f64>,
 }
 
@@ -29,7 +29,7 @@ impl NormalEquations {
         }
     }
 
-    /// Takes a new linearisation; false where it holds a value that is not finite.
+    /// Takes a new linearisation; false if it is not finite.
     pub fn assemble(&mut self, jacobian: &DMatrix<f64>, residual: &DVector<f64>) -> bool {
         let variables = self.gradient.len();
         let columns = (0..variables).map(|k| jacobian.column(k).data.into_slice());
@@ -55,14 +55,14 @@ impl NormalEquations {
     }
 }
 
-/// The scalar product of each column with each.
+/// The scalar products of all pairs of columns.
 pub(super) fn products(columns: &[&[f64]]) -> DMatrix<f64> {
     let mut sums = DMatrix::zeros(columns.len(), columns.len());
     let rows = columns.first().map_or(0, |column| column.len());
     for from in (0..rows).step_by(BLOCK) {
         let range = from..rows.min(from + BLOCK);
         let blocks = columns.iter().map(|column| &column[range.clone()]).enumerate();
-        // Most unknowns of a sensor or a run are seen in a few rows alone.
+        // Most nuisance parameters of a sensor or a run influence few rows.
         let seen = blocks.filter(|(_, block)| block.iter().any(|value| *value != 0.0));
         widest(Products {
             blocks: &seen.collect::<Vec<_>>(),

@@ -1,41 +1,42 @@
-//! Profiles: the least cost that the other variables leave where one is held, and how far it may be moved until that has risen
-//! by a threshold.
+//! Profiles: the smallest cost over the other variables for fixed values of one variable, and the interval in which it
+//! rises by less than a threshold.
 //!
 //! Raue et al., "Structural and practical identifiability analysis of partially observed dynamical models by exploiting the
-//! profile likelihood", Bioinformatics 25 (2009). An end at which the threshold is not reached within the bounds is open: the
-//! residuals do not determine the variable to that side.
+//! profile likelihood", Bioinformatics 25 (2009). An end is open if the threshold is not reached within the bounds: the
+//! residuals do not determine the variable on that side.
 
 use super::{Bounds, Options, Outcome, Problem, minimize};
 
-/// What is profiled.
+/// The variable to profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Profiled {
-    /// Place of the variable.
+    /// Position of the variable.
     pub variable: usize,
-    /// Rise of `½ ‖r‖²` at an end.
+    /// Rise of `½ ‖r‖²` at an end of the interval.
     pub rise: f64,
     /// First step away from the minimum, in the unit of the variable.
     pub step: f64,
 }
 
-/// The least cost along a variable.
+/// Smallest cost along a variable.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
     /// Values of the variable, ascending, with the rise of `½ ‖r‖²` there.
     pub points: Vec<[f64; 2]>,
-    /// Where the rise is the threshold, below and above the minimum; `None` where it is not reached.
+    /// Ends of the interval below and above the minimum; `None` if the threshold is not reached.
     pub ends: [Option<f64>; 2],
 }
 
-/// Steps to either side, and evaluations at an end.
+/// Most steps to either side, and most evaluations for an end.
 const STEPS: usize = 40;
 const LOOKS: usize = 20;
-/// An end is known to this part of its distance from the minimum.
+/// Relative tolerance of the distance of an end from the minimum.
 const CLOSE: f64 = 1e-3;
-/// A step that raises the cost by less than the first share of the threshold is doubled; by more than the second, halved.
+/// A step is doubled if it raises the cost by less than the first share of the threshold, and halved if by more than
+/// the second.
 const SHARES: [f64; 2] = [0.1, 0.4];
 
-/// Walks from the minimum to both ends, every other variable following from where it was.
+/// Steps from the minimum to both ends. The search for the other variables starts from the previous step.
 pub fn profile<P: Problem + ?Sized>(
     problem: &mut P,
     minimum: &Outcome,
@@ -66,7 +67,7 @@ struct Walk<'a, P: ?Sized> {
     points: Vec<[f64; 2]>,
 }
 
-/// A place on the way: the held variable, the others, and the rise.
+/// A point of the profile: the fixed variable, the others, and the rise.
 #[derive(Clone)]
 struct Place {
     value: f64,
@@ -107,8 +108,8 @@ impl<P: Problem + ?Sized> Walk<'_, P> {
         None
     }
 
-    /// The root of the rise less the threshold: false position on square roots, in which a quadratic rise is a line, and
-    /// halving where that stands still.
+    /// The root of rise minus threshold: false position on square roots, in which a quadratic rise is linear, and
+    /// bisection if that stagnates.
     fn between(&mut self, mut below: Place, mut above: Place) -> f64 {
         let start = self.minimum.x[self.of.variable];
         for look in 0..LOOKS {
@@ -135,7 +136,7 @@ impl<P: Problem + ?Sized> Walk<'_, P> {
         0.5 * (below.value + above.value)
     }
 
-    /// The least cost with the variable held; infinite where there is none.
+    /// Smallest cost with the variable fixed; infinite if there is none.
     fn at(&mut self, value: f64, others: &[f64]) -> Place {
         let variable = self.of.variable;
         let bounds = Bounds {
@@ -163,7 +164,7 @@ fn without(all: &[f64], place: usize) -> Vec<f64> {
     others
 }
 
-/// A problem with one variable held.
+/// A problem with one variable fixed.
 struct Held<'a, P: ?Sized> {
     problem: &'a mut P,
     variable: usize,

@@ -5,18 +5,18 @@ use super::normal::NormalEquations;
 use super::region;
 use nalgebra::{DMatrix, DVector};
 
-/// A variable closer to its bound than this part of the interval (or of its size) counts as being on it.
+/// A variable closer to its bound than this share of the interval (or of its size) counts as at the bound.
 const BOUND_TOLERANCE: f64 = 1e-6;
 
-/// How a point lies within its bounds, as the descent direction sees it.
+/// Position of a point within its bounds, along the descent direction.
 pub(super) struct Interior {
-    /// Scaled steps to steps: `step = factor ∘ scaled`.
+    /// Factors from scaled steps to steps: `step = factor ∘ scaled`.
     factor: DVector<f64>,
-    /// What the approaching bound adds to the diagonal of the scaled matrix.
+    /// Addition to the diagonal of the scaled matrix by the nearest bound.
     curvature: DVector<f64>,
-    /// Distance to the bound that the descent direction meets, infinite where it meets none.
+    /// Distance to the bound in the descent direction, infinite without one.
     distance: DVector<f64>,
-    /// What a unit of each variable is worth in residuals; zero for one that no residual sees.
+    /// Effect of a unit of each variable on the residuals; zero for a variable without influence.
     worth: DVector<f64>,
 }
 
@@ -54,7 +54,7 @@ impl Interior {
         }
     }
 
-    /// The largest cosine between the residual and a column, faded out where a bound is in the way of the descent.
+    /// Largest cosine between the residual and a column, reduced if a bound is close in the descent direction.
     pub fn optimality(&self, normal: &NormalEquations, cost: f64) -> f64 {
         let length = (2.0 * cost).sqrt();
         if length == 0.0 {
@@ -65,7 +65,7 @@ impl Interior {
         (0..self.worth.len()).map(|k| cosine(k) * room(k)).fold(0.0, f64::max)
     }
 
-    /// The length of the start in scaled variables: a first step may change a variable by as much as itself.
+    /// Length of the start in scaled variables: a first step may change a variable by its own size.
     pub fn first_radius(&self, x: &DVector<f64>) -> f64 {
         let seen = |k: &usize| self.worth[*k] > 0.0;
         let length = (0..x.len())
@@ -76,7 +76,7 @@ impl Interior {
         if length > 0.0 { length } else { 1.0 }
     }
 
-    /// The length of a vector by what its components are worth in residuals.
+    /// Length of a vector, with components weighted by their effect on the residuals.
     pub fn scaled_length(&self, vector: &DVector<f64>) -> f64 {
         vector.component_mul(&self.worth).norm()
     }
@@ -93,7 +93,7 @@ pub(super) struct Model<'a> {
 pub(super) struct Step {
     pub step: DVector<f64>,
     pub scaled: DVector<f64>,
-    /// The reduction of the cost that the model foresees.
+    /// Predicted reduction of the cost.
     pub predicted: f64,
 }
 
@@ -120,7 +120,7 @@ impl<'a> Model<'a> {
         if reach > 1.0 {
             return self.finish(newton);
         }
-        // Stay a little off the bounds, and come closer as the search converges.
+        // Keeps a small distance from the bounds, which decreases as the search converges.
         let inside = (1.0 - optimality).max(0.995);
         let cut = &newton * (reach * inside);
         let reflected = self.reflect(x, bounds, radius, inside, &(&newton * reach), &hits);
@@ -151,7 +151,7 @@ impl<'a> Model<'a> {
             radius,
             inside,
         )
-        // A point that is still on the bound is pulled off it, towards where the step came from.
+        // A point that is still at the bound is moved inside, towards the previous point.
         .map(|scaled| scaled * inside)
     }
 
@@ -194,7 +194,7 @@ impl<'a> Model<'a> {
     }
 }
 
-/// How many times `direction` fits before the first bound, and which variables meet theirs there.
+/// Largest multiple of `direction` before the first bound, and the variables that reach theirs there.
 fn reach(x: &DVector<f64>, direction: &DVector<f64>, bounds: &Bounds) -> (f64, Vec<bool>) {
     let times = |k: usize| match direction[k] {
         d if d > 0.0 => (bounds.upper[k] - x[k]) / d,
@@ -206,14 +206,14 @@ fn reach(x: &DVector<f64>, direction: &DVector<f64>, bounds: &Bounds) -> (f64, V
     (first, all.iter().map(|&t| t == first).collect())
 }
 
-/// How many times `direction` fits from `origin` to the border of the trust region.
+/// Largest multiple of `direction` from `origin` within the trust region.
 fn to_radius(origin: &DVector<f64>, direction: &DVector<f64>, radius: f64) -> f64 {
     let (a, b) = (direction.norm_squared(), origin.dot(direction));
     let c = origin.norm_squared() - radius * radius;
     (-b + (b * b - a * c).max(0.0).sqrt()) / a
 }
 
-/// The nearest point that lies off every bound, so that the scaling is defined there.
+/// The nearest point that is not at any bound, so that the scaling is defined there.
 pub(super) fn strictly_inside(start: &[f64], bounds: &Bounds) -> DVector<f64> {
     let offset = 1e-10;
     DVector::from_fn(start.len(), |k, _| {
@@ -228,20 +228,20 @@ pub(super) fn strictly_inside(start: &[f64], bounds: &Bounds) -> DVector<f64> {
     })
 }
 
-/// Rounding must not carry a step over its bound, nor onto it.
+/// Corrects rounding, which must not move a step onto or beyond its bound.
 pub(super) fn within(x: &DVector<f64>, bounds: &Bounds) -> DVector<f64> {
     DVector::from_fn(x.len(), |k, _| {
         x[k].clamp(bounds.lower[k].next_up(), bounds.upper[k].next_down())
     })
 }
 
-/// Which bound each variable rests on: close to it, with the descent pointing at it.
+/// The bound at which each variable is: close to it, with the descent direction towards it.
 pub(super) fn at_bound(x: &DVector<f64>, bounds: &Bounds, normal: &NormalEquations) -> Vec<i8> {
     let near = |gap: f64, k: usize| {
         let width = bounds.upper[k] - bounds.lower[k];
         gap <= BOUND_TOLERANCE * if width.is_finite() { width } else { x[k].abs().max(1.0) }
     };
-    // Of a range over many decades the whole lower part is near its end, measured by its width.
+    // On a range of many decades, the whole lower part would be close to the lower end relative to the width.
     let is_low = |k: usize| bounds.lower[k] <= 0.0 || x[k] < 2.0 * bounds.lower[k];
     (0..x.len())
         .map(|k| match normal.gradient[k] {

@@ -2,13 +2,13 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// How exactly the length of a step on the border meets the radius; more would be wasted on an approximate model.
+/// Relative tolerance of the length of a step on the boundary; a smaller one would be wasted on an approximate model.
 const LENGTH_TOLERANCE: f64 = 0.1;
 
-/// Newton steps on the damping; it converges from either side within a few.
+/// Most Newton steps for the damping; it converges in a few.
 const DAMPING_STEPS: usize = 20;
 
-/// The step: the undamped one where it fits, else `p = -(B + αI)⁻¹g` with the damping α that makes it fit.
+/// The undamped step if it is inside, otherwise `p = -(B + αI)⁻¹g` with the damping α that puts it on the boundary.
 ///
 /// Moré & Sorensen, "Computing a trust region step", SIAM J. Sci. Stat. Comput. 4 (1983); since B is positive
 /// semidefinite, its hard case cannot occur.
@@ -20,7 +20,7 @@ pub(super) fn step(b: &DMatrix<f64>, g: &DVector<f64>, radius: f64) -> DVector<f
     {
         return trial.step.clone();
     }
-    // At this damping no step is longer than the radius, whatever B is.
+    // At this damping no step is longer than the radius, for any B.
     let (mut low, mut high) = (0.0, steepest);
     let mut damping = undamped.map_or(1e-3 * steepest, |trial| trial.newton(radius));
     let mut best = DVector::zeros(g.len());

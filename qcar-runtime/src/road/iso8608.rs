@@ -22,7 +22,7 @@ pub enum Class {
 ///
 /// The displacement has the one-sided power spectral density `G(n) = G(n0) (n/n0)^-2`, `n0` = 0.1 cycles/m, for wave
 /// numbers `n` of 0.011 to 2.83 cycles/m, and nothing outside (ISO 8608, geometric means of the classes). It is a sum
-/// of sines, one in each of 512 bands of equal ratio, with random phase and random place in its band: their wave
+/// of sines, one in each of 512 bands of equal ratio, with random phase and random position in its band. The wave
 /// numbers have no common multiple, so the road does not repeat. It rises from flat over the first 5 m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Random {
@@ -30,7 +30,7 @@ pub struct Random {
     pub class: Class,
     /// Seed of phases and wave numbers.
     pub seed: u64,
-    /// m.
+    /// Length, m.
     pub length: f64,
     /// Distance between points, m: at most a tenth of the shortest wave, 0.035 m.
     pub spacing: f64,
@@ -107,7 +107,7 @@ struct Wave {
     phase: f64,
 }
 
-/// So many points are reached from one by turning each sine on: rounding then stays below 1e-14 of its amplitude.
+/// Number of points that are reached from one by rotating each sine: rounding then stays below 1e-14 of its amplitude.
 const TURNED: usize = 64;
 
 /// The sums of waves at so many points, a `spacing` apart.

@@ -1,14 +1,14 @@
-//! From samples to the vertices of a road: checks, steps, and one segment for many samples on a line.
+//! Vertices of a road from samples: checks, steps, and one segment for many samples on a line.
 
 use super::RoadError;
 
-/// Points off a line by less than this (m) lie on it: rounding of the arithmetic.
+/// Distance from a line below which a point is on it, m: rounding of the arithmetic.
 pub(super) const EXACT: f64 = 1e-12;
-/// The same for samples: the last digit that road files carry.
+/// The same for samples, m: the last digit in road files.
 pub(super) const RESOLUTION: f64 = 1e-6;
-/// By how much the slope of a sample may miss that of the chord to the next one.
+/// Largest difference between the slope of a sample and that of the chord to the next one.
 const SLOPE_TOLERANCE: f64 = 0.1;
-/// How far a road may change, as a share of its standard deviation, when a sample is left out.
+/// Largest change of a road, relative to its standard deviation, if a sample is left out.
 const ROUGHNESS_LIMIT: f64 = 0.25;
 
 /// The points of a road in samples, with a second point at the x of every vertical step.
@@ -59,7 +59,7 @@ fn check_finite(column: &'static str, values: &[f64]) -> Result<(), RoadError> {
     }
 }
 
-/// Adds the foot of each step: where the slope leads past the next sample, the road follows it, then steps.
+/// Adds the lower end of each step: if the slope leads past the next sample, the road follows it, then steps.
 fn with_steps(points: &[[f64; 2]], slope: &[f64]) -> Result<Vec<[f64; 2]>, RoadError> {
     let mut out = vec![points[0]];
     let mut after_step = false;
@@ -82,7 +82,7 @@ fn with_steps(points: &[[f64; 2]], slope: &[f64]) -> Result<Vec<[f64; 2]>, RoadE
     Ok(out)
 }
 
-/// The largest number of points that count as corners, and the least unevenness of their distances.
+/// Largest number of points that count as corners, and smallest relative unevenness of their distances.
 const MOST_CORNERS: usize = 50;
 const UNEVEN: f64 = 1.5;
 
@@ -95,7 +95,7 @@ pub(super) fn are_corners(x: &[f64], points: &[[f64; 2]], slope: &[f64]) -> bool
             .filter(|length| *length > 0.0)
     };
     let (shortest, longest) = (lengths().fold(f64::INFINITY, f64::min), lengths().fold(0.0, f64::max));
-    // Where a slope leads elsewhere, the foot of a step has been added.
+    // If a slope leads elsewhere, the lower end of a step has been added.
     let leads = points.len() == x.len()
         && points.windows(2).zip(slope).all(|(pair, slope)| {
             let [dx, dz] = [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]];
@@ -104,7 +104,7 @@ pub(super) fn are_corners(x: &[f64], points: &[[f64; 2]], slope: &[f64]) -> bool
     leads && x.len() <= MOST_CORNERS && longest > UNEVEN * shortest
 }
 
-/// Refuses samples that are too far apart for what lies between them.
+/// Refuses samples that are too far apart for the curve between them.
 pub(super) fn check_roughness(points: &[[f64; 2]]) -> Result<(), RoadError> {
     let count = points.len() as f64;
     let mean = points.iter().map(|p| p[1]).sum::<f64>() / count;
@@ -125,7 +125,7 @@ pub(super) fn check_roughness(points: &[[f64; 2]]) -> Result<(), RoadError> {
     Ok(())
 }
 
-/// How far a point lies above the line through its neighbours; nothing beside a step, which is meant.
+/// Distance of a point above the line through its neighbours; zero beside a step, which is intended.
 fn change_without_the_middle(w: &[[f64; 2]]) -> f64 {
     if w[0][0] == w[1][0] || w[1][0] == w[2][0] {
         return 0.0;
@@ -134,7 +134,7 @@ fn change_without_the_middle(w: &[[f64; 2]]) -> f64 {
     w[1][1] - (w[0][1] + share * (w[2][1] - w[0][1]))
 }
 
-/// Leaves out points that lie on the line between those kept, within `tolerance` (m) in z.
+/// Removes points on the line between the remaining ones, within `tolerance` (m) in z.
 pub(super) fn simplify(points: &[[f64; 2]], tolerance: f64) -> Vec<[f64; 2]> {
     let mut points = points.to_vec();
     points.dedup();
@@ -174,7 +174,7 @@ impl Funnel {
 
     fn narrow(&mut self, to: [f64; 2], tolerance: f64) {
         let (width, rise) = (to[0] - self.from[0], to[1] - self.from[1]);
-        // Nothing continues a step.
+        // A step is not continued by a line.
         if width == 0.0 {
             (self.lowest, self.highest) = (f64::INFINITY, f64::NEG_INFINITY);
         } else {

@@ -19,28 +19,28 @@ pub enum Shape {
     HalfSine {
         /// Height in the middle.
         height: f64,
-        /// From flat to flat.
+        /// Length.
         length: f64,
     },
     /// A rectangle above the road.
     Plank {
         /// Height of both steps.
         height: f64,
-        /// From step to step.
+        /// Length.
         length: f64,
     },
     /// A rectangle below the road.
     Pothole {
         /// Depth of both steps.
         depth: f64,
-        /// From step to step.
+        /// Length.
         length: f64,
     },
 }
 
-/// How far a chord may stay from the curve that it stands for, m.
+/// Largest distance of a chord from the curve that it replaces, m.
 const SAGITTA: f64 = 1e-7;
-/// Flat road described after the obstacle, m.
+/// Length of flat road after the obstacle, m.
 const RUN_OUT: f64 = 10.0;
 
 impl Shape {

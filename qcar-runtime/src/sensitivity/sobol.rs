@@ -4,7 +4,7 @@
 //! analysis of model output", Comp. Phys. Comm. 181 (2010), table 2: for the first order (b), for the total (f), which is
 //! Jansen's. Confidence is by a bootstrap over the base designs (Archer, Saltelli and Sobol, J. Stat. Comput. Simul. 58, 1997).
 
-use crate::progress::{self, Told};
+use crate::progress::{self, OnProgress};
 use crate::random::SplitMix;
 
 /// How many designs, and which.
@@ -57,7 +57,7 @@ struct Row {
 pub fn indices(
     parameters: usize,
     plan: Plan,
-    told: Told<'_>,
+    on_progress: OnProgress<'_>,
     evaluate: impl Fn(&[Vec<f64>]) -> Vec<Option<Vec<f64>>> + Sync + Send,
 ) -> Indices {
     let bases = (plan.designs / (parameters + 2)).max(2);
@@ -78,7 +78,7 @@ pub fn indices(
             mixed: found.collect::<Option<_>>()?,
         })
     };
-    let rows: Vec<Row> = progress::map(&points, told, row).into_iter().flatten().collect();
+    let rows: Vec<Row> = progress::map(&points, on_progress, row).into_iter().flatten().collect();
     let results = rows.first().map_or(0, |row| row.a.len());
     let all: Vec<usize> = (0..rows.len()).collect();
     let resamples = resamples(rows.len(), plan.seed);

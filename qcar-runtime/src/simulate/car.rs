@@ -1,4 +1,4 @@
-//! A model on its tyre, ready to roll.
+//! A model on its tyre.
 
 use super::equilibrium::Unbalanced;
 use super::failure::SimulateError;
@@ -17,7 +17,7 @@ pub struct Car<'a, M: ?Sized> {
     pub tyre: Tyre,
     /// Static load that the tyre carries, N.
     pub load: f64,
-    /// What of the model is simulated.
+    /// Variant of the model.
     pub variant: Variant,
 }
 
@@ -27,14 +27,14 @@ pub enum Variant {
     /// All of the model.
     #[default]
     Complete,
-    /// The wheel and all else moves along the road at constant speed.
+    /// The wheel and all other masses move along the road at constant speed.
     LongitudinallyLocked,
-    /// Longitudinally locked, and the tyre feels no more of the road than its height below the wheel's centre.
+    /// Longitudinally locked, and the tyre responds only to the road height below the wheel centre.
     PureVertical,
 }
 
 impl<M: Model + ?Sized> Car<'_, M> {
-    /// The tyre link, or why the car cannot roll.
+    /// The tyre link, or why the model cannot roll.
     pub(super) fn contact(&self) -> Result<&ContactAbout, SimulateError> {
         let about = self.model.about();
         let (found, expected) = (self.parameters.len(), about.parameters.len());
@@ -51,7 +51,7 @@ impl<M: Model + ?Sized> Car<'_, M> {
         contact.ok_or(SimulateError::Role(RoleError::NoTyre { model }))
     }
 
-    /// The tyre as the variant has it.
+    /// The tyre of the variant.
     pub(super) fn rolling_tyre(&self) -> Tyre {
         match self.variant {
             Variant::PureVertical => self.tyre.with_geometry(Geometry::Point),
@@ -59,7 +59,7 @@ impl<M: Model + ?Sized> Car<'_, M> {
         }
     }
 
-    /// Places of the states that the variant keeps from moving: all along the axis in which the wheel rolls.
+    /// Positions of the states that the variant fixes: all along the axis of rolling.
     pub(super) fn locked(&self, contact: &ContactAbout) -> Vec<usize> {
         let free = self.variant == Variant::Complete;
         let Some(rolling) = contact.axes.get(1).filter(|_| !free) else {

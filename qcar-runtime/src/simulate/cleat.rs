@@ -1,4 +1,4 @@
-//! Cleat runs of a campaign, ready to be driven again.
+//! Cleat runs of a campaign, ready to be simulated.
 
 use std::path::Path;
 
@@ -9,24 +9,24 @@ use crate::tyre::{Geometry, Rates, Tyre};
 
 use super::ride::Drive;
 
-/// A cleat run: what was driven and measured.
+/// A measured cleat run.
 #[derive(Clone, Debug)]
 pub struct Cleat {
-    /// As the campaign lists it.
+    /// The run of the campaign.
     pub run: Run,
-    /// m/s.
+    /// Speed, m/s.
     pub speed: f64,
-    /// What was recorded.
+    /// The record.
     pub measured: History,
-    /// What was driven over.
+    /// The road.
     pub road: Road,
 }
 
 impl Cleat {
-    /// Reads a run and its road; `None` where it is no cleat run.
+    /// Reads a run and its road; `None` if it is no cleat run.
     ///
     /// # Errors
-    /// A file that cannot be read, or samples that make no road.
+    /// Fails if a file cannot be read, or if its samples are no road.
     pub fn read(campaign: &Campaign, run: &Run) -> Result<Option<Self>, InputError> {
         let Test::Cleat { speed, cleat, .. } = &run.test else {
             return Ok(None);
@@ -60,18 +60,18 @@ fn road(campaign: &Campaign, name: &str) -> Result<Road, InputError> {
     })
 }
 
-/// What a campaign says of the tyre: its area contact, and the static load on it in N.
+/// The tyre of a campaign with area contact, and its static load in N.
 ///
 /// # Errors
-/// Where `[vehicle]` lacks `r_tire`, `static_tire_def` or `static_tire_load`, or where they make no tyre.
+/// Fails if `[vehicle]` lacks `r_tire`, `static_tire_def` or `static_tire_load`, or if they make no tyre.
 pub fn tyre(campaign: &Campaign) -> Result<(Tyre, f64), InputError> {
     tyre_of(&|name| campaign.vehicle(name), &campaign.manifest())
 }
 
-/// The same of any vehicle, whose facts stand in `file`.
+/// The same for any vehicle data, from `file`.
 ///
 /// # Errors
-/// As [`tyre`].
+/// Fails as [`tyre`] does.
 pub fn tyre_of(vehicle: &dyn Fn(&str) -> Option<f64>, file: &Path) -> Result<(Tyre, f64), InputError> {
     let fact = |name: &str, unit: &str| vehicle(name).ok_or_else(|| missing(file, name, unit));
     let radius = fact("r_tire", "m")?;

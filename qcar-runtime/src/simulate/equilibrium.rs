@@ -1,28 +1,28 @@
-//! Where a model comes to rest: the root of its derivative, by Newton's method.
+//! The equilibrium of a model: the root of its derivative, by Newton's method.
 
 use nalgebra::{DMatrix, DVector};
 
-/// A derivative that cannot be brought to zero.
+/// Error: no equilibrium was found.
 #[derive(Debug, PartialEq)]
 pub(super) struct Unbalanced {
-    /// The state that moves most.
+    /// The state with the largest rate.
     pub state: usize,
     /// Its rate.
     pub rate: f64,
 }
 
 const MOST_ITERATIONS: usize = 100;
-/// Rates that would move no state by more than this part of its size count as rest.
+/// Largest rate at equilibrium, relative to the size of the state.
 const REST: f64 = 1e-9;
-/// Below this part there is nothing but rounding to be improved.
+/// Relative rate below which only rounding remains.
 const ROUNDING: f64 = 1e-12;
-/// Directions in which the scaled Jacobian is flatter than this are free: a model may float in x, and a dry friction
-/// may rest at any force. It lies above the rounding of the difference quotients and below any spring.
+/// Relative singular value of the scaled Jacobian below which a direction is free: a model may float in x, and dry
+/// friction may rest at any force. It is above the rounding of the difference quotients and below any spring.
 const FREE: f64 = 1e-9;
 
 /// Moves `x` to the nearest zero of `derivative`; `scales` are the sizes of the states.
 ///
-/// Where the rest is not unique the shortest way is taken, so that what nothing pushes stays where it is.
+/// If the equilibrium is not unique, the nearest is taken, so that states without a force keep their values.
 pub(super) fn settle(
     scales: &[f64],
     mut derivative: impl FnMut(&[f64], &mut [f64]),
@@ -51,7 +51,7 @@ pub(super) fn settle(
     judge(&rate, &weights)
 }
 
-/// The shortest step that solves `jacobian * step = residual`; none where the Jacobian is not finite.
+/// The shortest step that solves `jacobian * step = residual`; `None` if the Jacobian is not finite.
 fn shortest_solution(jacobian: DMatrix<f64>, residual: &DVector<f64>) -> Option<DVector<f64>> {
     const MOST_SWEEPS: usize = 1000;
     if !jacobian.iter().all(|entry| entry.is_finite()) {
@@ -63,14 +63,14 @@ fn shortest_solution(jacobian: DMatrix<f64>, residual: &DVector<f64>) -> Option<
     })
 }
 
-/// The step if no direction is free, at a fraction of the cost of a singular value decomposition: no singular value is smaller than the
-/// reciprocal of the norm of the inverse.
+/// The step if no direction is free, which is much cheaper than a singular value decomposition: no singular value is
+/// smaller than the reciprocal of the norm of the inverse.
 fn only_solution(jacobian: &DMatrix<f64>, residual: &DVector<f64>) -> Option<DVector<f64>> {
     let inverse = jacobian.clone().try_inverse()?;
     (FREE * inverse.norm() < 1.0).then(|| inverse * residual)
 }
 
-/// Goes along `step` as far as the largest weighted rate falls. False where it does not fall at all.
+/// Moves along `step` as long as the largest weighted rate decreases. False if it does not decrease at all.
 fn descend(
     scales: &[f64],
     weights: &[f64],
@@ -97,7 +97,7 @@ fn descend(
     false
 }
 
-/// Central differences, a column for each state moved by its scale.
+/// Central differences, with one column for each state.
 fn differences(scales: &[f64], derivative: &mut impl FnMut(&[f64], &mut [f64]), x: &[f64]) -> DMatrix<f64> {
     let n = x.len();
     let (mut there, mut up, mut down) = (x.to_vec(), vec![0.0; n], vec![0.0; n]);
@@ -116,13 +116,13 @@ fn differences(scales: &[f64], derivative: &mut impl FnMut(&[f64], &mut [f64]), 
     jacobian
 }
 
-/// The reciprocal of each row's largest entry, so that rates of any unit weigh alike; 1 for a row of zeros.
+/// Reciprocal of the largest entry of each row, so that rates of all units have equal weight; 1 for a row of zeros.
 fn row_weights(jacobian: &DMatrix<f64>) -> Vec<f64> {
     let weight = |largest: f64| if largest > 0.0 { largest.recip() } else { 1.0 };
     jacobian.row_iter().map(|row| weight(row.amax())).collect()
 }
 
-/// Place and size of the largest weighted rate; infinite where one is not a number.
+/// Position and value of the largest weighted rate; infinite if one is NaN.
 fn largest(rate: &[f64], weights: &[f64]) -> (usize, f64) {
     let weighted = rate.iter().zip(weights).map(|(r, w)| (r * w).abs());
     let weighted = weighted.map(|size| if size.is_nan() { f64::INFINITY } else { size });

@@ -5,7 +5,7 @@ use crate::roles::RoleError;
 use crate::solver::Report;
 use crate::tyre::TyreError;
 
-/// Why a simulation failed.
+/// Reason why a simulation failed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says it")]
 pub enum SimulateError {

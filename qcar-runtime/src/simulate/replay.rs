@@ -1,7 +1,7 @@
-//! A model driven by what was recorded: what its sensors would have recorded.
+//! A model driven by recorded inputs, and the signals of its sensors.
 //!
-//! Inputs are known at nodes that are half a step apart, so that the classical Runge-Kutta method never has to guess
-//! between them; a step is halved where a law is too stiff for it.
+//! Inputs are known at nodes half a step apart, so that the classical Runge-Kutta method needs no interpolation. A step
+//! is halved if a law is too stiff for it.
 
 // Recorded inputs at the nodes of an integration.
 mod input;
@@ -27,7 +27,7 @@ use input::rows;
 use sets::{Alone, Sets, Several};
 use stepper::Stepper;
 
-/// Where a sensor's signal is found while time goes on.
+/// Source of a sensor's signal during integration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reading {
     /// An output.
@@ -36,50 +36,51 @@ pub enum Reading {
     State(usize),
 }
 
-/// A replay of one record, whatever the parameters.
+/// A replay of one record, for any parameters.
 pub struct Replay<'a> {
     model: &'a dyn Model,
     recorded: Vec<Recorded<'a>>,
     how: Between,
-    /// At some samples, in their order: states and what they are then. All others go on, from zero at first.
+    /// Samples at which states are set, in order, with the values of these states. All other states continue, from zero
+    /// at the start.
     restarts: Vec<(usize, Vec<(usize, f64)>)>,
     readings: Vec<Reading>,
     /// The inputs at each node.
     nodes: OnceLock<Vec<Vec<f64>>>,
 }
 
-/// What a replay gives: a row for each set of parameters that took part.
+/// Result of a replay, with a row for each parameter set.
 pub struct Replayed {
-    /// For each reading its samples; not finite from where the model runs away even with the shortest steps.
+    /// Samples of each reading; not finite after the model diverges even with the shortest steps.
     pub signals: Vec<Vec<f64>>,
     /// All states at each sample.
     states: Vec<Vec<f64>>,
-    /// They one sample later than the last.
+    /// All states one sample after the last.
     end: Vec<f64>,
-    /// How often each step was halved.
+    /// Number of halvings of each step.
     halvings: Vec<u8>,
-    /// How often the record was replayed until the motion repeated.
+    /// Number of replays until the motion was periodic.
     periods: usize,
 }
 
-/// How long the steps of a replay are.
+/// Step lengths of a replay.
 #[derive(Clone, Copy)]
 enum Steps<'r> {
-    /// As the laws need it.
+    /// As the laws need.
     Found,
-    /// As those of another replay.
+    /// Those of another replay.
     Like(&'r Replayed),
-    /// As those of another replay, until the states of the one set agree with its own.
+    /// Those of another replay, until the states of the set agree with its states.
     Beside(&'r Replayed),
 }
 
-/// Periods until a motion is taken for one that repeats, whether it does or not,
+/// Largest number of periods until a motion counts as periodic.
 const PERIODS: usize = 60;
-/// and by what share of their largest value states may still differ from a period to the next.
+/// Largest relative difference of the states between two periods of a periodic motion.
 const REPEATED: f64 = 1e-9;
 
 impl<'a> Replay<'a> {
-    /// Prepares a replay of records that suit the model ([`replay`] checks them).
+    /// Prepares a replay of records that are valid for the model ([`replay`] checks them).
     pub fn new(
         model: &'a dyn Model,
         recorded: Vec<Recorded<'a>>,
@@ -97,7 +98,8 @@ impl<'a> Replay<'a> {
         }
     }
 
-    /// What follows from the parameters, and where states `begin` elsewhere than they were seen: by so much.
+    /// The signals of a parameter set. `begin` has states with the deviation of their initial value from the measured
+    /// one.
     pub fn run(&self, p: &[f64], begin: &[(usize, f64)]) -> Replayed {
         let mut alone = Alone::new(self.model, p);
         let mut replayed = self.advance(&mut alone, (self.rest::<Alone<'_>>(), begin), Steps::Found);
@@ -110,8 +112,8 @@ impl<'a> Replay<'a> {
         replayed
     }
 
-    /// The signals of each of several parameter sets, in the steps of a replay and for as many periods: what has not settled is
-    /// the same in both, so that their difference is that of the parameters alone.
+    /// The signals of each of several parameter sets, with the steps and the number of periods of a replay. A remaining
+    /// transient is the same in both, so their difference is due to the parameters alone.
     pub fn like(&self, other: &Replayed, p: &[Vec<f64>], begin: &[(usize, f64)]) -> Vec<Vec<Vec<f64>>> {
         let some = |p: &[Vec<f64>]| match p {
             [one] => vec![self.again(&mut Alone::new(self.model, one), begin, other).signals],
@@ -123,8 +125,8 @@ impl<'a> Replay<'a> {
         p.par_chunks(LANES).flat_map_iter(some).collect()
     }
 
-    /// The derivative of each signal by some initial states, each of which comes with its step for a difference quotient. A linear
-    /// model whose states run freely needs none.
+    /// Derivative of each signal by some initial states, each with its step for a difference quotient. A linear model
+    /// without resets needs no steps.
     pub fn by_initial_states(
         &self,
         base: &Replayed,
@@ -148,7 +150,7 @@ impl<'a> Replay<'a> {
         states.par_iter().map(quotient).collect()
     }
 
-    /// [`Self::by_initial_states`] of a linear model: each reading's response to a state that begins at one.
+    /// [`Self::by_initial_states`] of a linear model: the response of each reading to a unit initial state.
     fn free_responses(&self, base: &Replayed, p: &[f64], states: &[(usize, f64)]) -> Vec<Vec<Vec<f64>>> {
         let steps = steps(self.how.rate);
         let free = FreeResponse::new(self.model, p, 1.0 / (self.how.rate * steps as f64));
@@ -158,14 +160,14 @@ impl<'a> Replay<'a> {
         (0..states.len()).map(of_state).collect()
     }
 
-    /// The signals of other initial states. Once all states agree with those of the replay, its samples are copied.
+    /// The signals for other initial states. Once all states agree with those of the replay, its samples are copied.
     fn beside(&self, other: &Replayed, p: &[f64], begin: &[(usize, f64)]) -> Vec<Vec<f64>> {
         let mut alone = Alone::new(self.model, p);
         let from = (self.rest::<Alone<'_>>(), begin);
         self.advance(&mut alone, from, Steps::Beside(other)).signals
     }
 
-    /// In the steps of another replay.
+    /// With the steps of another replay.
     fn again<S: Sets>(&self, sets: &mut S, begin: &[(usize, f64)], other: &Replayed) -> Replayed {
         let mut replayed = self.advance(sets, (self.rest::<S>(), begin), Steps::Like(other));
         for _ in 1..other.periods {
@@ -178,14 +180,14 @@ impl<'a> Replay<'a> {
         vec![0.0; self.model.about().states.len() * S::LANES]
     }
 
-    /// For each node the inputs of the model.
+    /// The inputs of the model at each node.
     fn inputs(&self, steps: usize) -> Vec<Vec<f64>> {
         let rows = rows(self.model.about(), &self.recorded, &self.how, 2 * steps);
         let nodes = rows.first().map_or(0, Vec::len);
         (0..nodes).map(|k| rows.iter().map(|row| row[k]).collect()).collect()
     }
 
-    /// From a state with some of it elsewhere.
+    /// Integrates from a state with some changed values.
     fn advance<S: Sets>(
         &self,
         side: &mut S,
@@ -258,7 +260,7 @@ impl<'a> Replay<'a> {
         }
     }
 
-    /// The node at which a step ends; what is held stays until the next sample replaces it.
+    /// The node at which a step ends; a held input keeps its value until the next sample.
     fn end(&self, node: usize, count: usize) -> usize {
         if self.how.band_limited && self.how.periodic {
             (node + 2) % count
@@ -271,7 +273,7 @@ impl<'a> Replay<'a> {
 }
 
 impl Replayed {
-    /// True where it ends as it began, or has no number.
+    /// True if the motion ends as it began, or is not finite.
     fn repeats(&self) -> bool {
         let most = |state: usize| self.states.iter().map(|x| x[state].abs()).fold(0.0, f64::max);
         let first = self.states.first().unwrap_or(&self.end);
@@ -282,7 +284,8 @@ impl Replayed {
     }
 }
 
-/// True where no state is apart from another replay's by more than a trace of the farthest it ever was, which is kept.
+/// True if every state differs from that of another replay by a negligible share of its largest difference so far,
+/// which is updated.
 fn has_joined(x: &[f64], other: &[f64], apart: &mut [f64]) -> bool {
     const TRACE: f64 = 1e-4;
     let mut joined = true;
@@ -294,26 +297,26 @@ fn has_joined(x: &[f64], other: &[f64], apart: &mut [f64]) -> bool {
     joined
 }
 
-/// The values of one state or output of all sets.
+/// The values of one state or output in all sets.
 fn lanes_of<S: Sets>(of: &mut [f64], place: usize) -> &mut [f64] {
     &mut of[place * S::LANES..][..S::LANES]
 }
 
-/// Steps of at most a millisecond, and at least two a sample, whose band may reach up to half its rate: they are halved where
-/// that is too long.
+/// Whole steps: at most a millisecond, and at least two per sample, since the band may reach half the rate. They are
+/// halved where they are too long.
 fn steps(rate: f64) -> usize {
     const LONGEST: f64 = 1e-3;
     ((1.0 / (rate * LONGEST)).ceil() as usize).max(2)
 }
 
-/// Drives a model, with a value for each of its parameters, by records from rest. Returns each reading at each sample.
+/// Drives a model at rest with records, for a value of each parameter. Returns each reading at each sample.
 ///
-/// A motion that was recorded as a velocity or acceleration is integrated without its mean, from height zero on. What was not
-/// recorded rests at zero.
+/// A motion recorded as velocity or acceleration is integrated without its mean, from height zero. Excitations without
+/// a record are zero.
 ///
 /// # Errors
-/// Too few parameters, and records that are empty, of unlike length, not finite, or of another kind than their excitation; a
-/// motion that is held.
+/// Fails if parameters are missing, if records are empty, of unequal length, not finite, or of another kind than their
+/// excitation, or if a motion is held between samples.
 pub fn replay(
     model: &dyn Model,
     p: &[f64],
@@ -365,10 +368,10 @@ fn counted(name: &'static str, found: usize, expected: usize) -> Result<(), Simu
     }
 }
 
-/// Where a sensor's signal is found.
+/// Source of a sensor's signal.
 ///
 /// # Errors
-/// Where the model neither outputs it nor has it as a state.
+/// Fails if the model has it neither as an output nor as a state.
 pub fn reading(about: &About, signal: &crate::model::Signal) -> Result<Reading, SignalError> {
     let state_kind = match signal.kind {
         SignalKind::Motion(Quantity::Position) => Some(StateKind::Position),

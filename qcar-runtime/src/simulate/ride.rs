@@ -8,7 +8,7 @@ use super::sampling::{AntiAlias, Grid};
 use super::settings::{Integrator, Settings, judged};
 use super::shortcut::Shortcut;
 use crate::model::{About, Model};
-use crate::progress::{self, Told};
+use crate::progress::{self, OnProgress};
 use crate::road::Road;
 use crate::solver::{Effort, ExponentialAdams, Reason, System};
 use crate::tyre::{Geometry, Tyre};
@@ -50,7 +50,7 @@ pub struct Ride {
     pub effort: Effort,
 }
 
-/// Simulates each ride, in parallel; the results do not depend on the number of threads. Ride by ride `told` hears how
+/// Simulates each ride, in parallel; the results do not depend on the number of threads. Ride by ride `on_progress` hears how
 /// far it is.
 ///
 /// # Errors
@@ -59,9 +59,9 @@ pub fn rides<M: Model + ?Sized>(
     car: &Car<'_, M>,
     drives: &[Drive<'_>],
     settings: &Settings,
-    told: Told<'_>,
+    on_progress: OnProgress<'_>,
 ) -> Vec<Result<Ride, SimulateError>> {
-    progress::map(drives, told, |drive| ride(car, drive, settings))
+    progress::map(drives, on_progress, |drive| ride(car, drive, settings))
 }
 
 /// Simulates a ride that begins at rest on the flat ground before the road.

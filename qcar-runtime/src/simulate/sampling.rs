@@ -1,40 +1,40 @@
-//! Signals as a recorder would take them: on a fine grid, through an anti-alias filter, at the sample rate.
+//! Sampling of signals as by a recorder: on a fine grid, through an anti-alias filter, at the sample rate.
 
 use super::gap::Gap;
 use crate::vectors::{Loops, widest};
 
 /// The anti-alias filter: linear phase, without delay, flat within 0.02 % up to 0.4 of the sample rate.
 ///
-/// A signal is computed on a grid finer than the sample rate and low-passed by a sinc under a Kaiser window (J. F.
-/// Kaiser, "Nonrecursive digital filter design using the I0-sinh window function", 1974) of 80 dB. What lies above 0.6
-/// of the sample rate is stopped, so that aliases stay above 0.4 of it. Measuring systems do the same in their
-/// converters; a model must be sampled alike where its peaks are compared with theirs.
+/// A signal is computed on a grid finer than the sample rate and low-passed by a sinc with a Kaiser window (J. F.
+/// Kaiser, "Nonrecursive digital filter design using the I0-sinh window function", 1974) of 80 dB. Frequencies above
+/// 0.6 of the sample rate are stopped, so that aliases stay above 0.4 of it. Measuring systems do the same in their
+/// converters, so a model must be sampled alike for a comparison of peaks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AntiAlias {
     oversampling: usize,
-    /// The tap in the middle, then those beside it; the filter is symmetric.
+    /// Centre tap, then those on one side; the filter is symmetric.
     taps: Vec<f64>,
 }
 
 impl AntiAlias {
-    /// Points of the fine grid for each sample: enough for signals that are continuous. Over a cleat the samples stay
-    /// within 0.02 % of those from sixteen points.
+    /// Points of the fine grid per sample, for continuous signals. Over a cleat the samples differ by at most 0.02 %
+    /// from those with sixteen points.
     pub const CONTINUOUS: usize = 2;
-    /// Points of the fine grid for each sample, for signals that jump.
+    /// Points of the fine grid per sample, for signals with jumps.
     pub const JUMPING: usize = 16;
-    /// How many samples the filter looks back and ahead.
+    /// Reach of the filter to each side, in samples.
     pub const REACH: usize = 13;
 
     const ATTENUATION: f64 = 80.0;
 
-    /// The filter for a grid of `oversampling` points (at least 1) for each sample. With one point it passes the signal unchanged, with
-    /// all that lies above half of the sample rate.
+    /// The filter for a grid of `oversampling` points (at least 1) per sample. With one point it passes the signal
+    /// unchanged, with all frequencies above half the sample rate.
     pub fn new(oversampling: usize) -> Self {
         let beta = 0.1102 * (Self::ATTENUATION - 8.7);
         let reach = (Self::REACH * oversampling) as i32;
         let tap = |i: i32| {
             let window = bessel_i0(beta * (1.0 - (f64::from(i) / f64::from(reach)).powi(2)).sqrt());
-            // The edge of the ideal low-pass lies at half the sample rate.
+            // The cut-off of the ideal low-pass is half the sample rate.
             window * sinc(f64::from(i) / oversampling as f64)
         };
         let taps: Vec<f64> = (0..=reach).map(tap).collect();
@@ -55,8 +55,8 @@ impl AntiAlias {
         self.decimate_phases(|phase| &phases[phase], samples)
     }
 
-    /// The same for a signal that stands phase by phase: points a sample apart are neighbours in memory, as a tap
-    /// weighs them.
+    /// The same for a signal that is stored phase by phase: points one sample apart are neighbours in memory, as the
+    /// taps need them.
     fn decimate_phases<'a>(&self, phase: impl Fn(usize) -> &'a [f64], samples: usize) -> Vec<f64> {
         let mut out = vec![0.0; samples];
         widest(Decimation {
@@ -68,7 +68,7 @@ impl AntiAlias {
     }
 }
 
-/// A signal that stands phase by phase, and what becomes of it.
+/// A signal that is stored phase by phase, and its filtered samples.
 struct Decimation<'f, 'o, P> {
     filter: &'f AntiAlias,
     phase: P,
@@ -86,7 +86,7 @@ impl<'a, P: Fn(usize) -> &'a [f64]> Loops for Decimation<'_, '_, P> {
         for (out, y) in self.out.iter_mut().zip(from(reach)) {
             *out = taps[0] * y;
         }
-        // At the distance of whole samples the taps vanish: of two points a sample, every other one.
+        // The taps are zero at whole samples: with two points per sample, every other one.
         let taps = taps.iter().enumerate().skip(1).filter(|(_, tap)| **tap != 0.0);
         for (distance, tap) in taps {
             let beside = from(reach - distance).iter().zip(from(reach + distance));
@@ -100,7 +100,7 @@ impl<'a, P: Fn(usize) -> &'a [f64]> Loops for Decimation<'_, '_, P> {
 /// The fine grid of a recording.
 pub(super) struct Grid {
     filter: AntiAlias,
-    /// Between points, s.
+    /// Distance of the points, s.
     spacing: f64,
     samples: usize,
 }
@@ -120,7 +120,7 @@ impl Grid {
         self.time(0)
     }
 
-    /// Between points, s.
+    /// Distance of the points, s.
     pub fn spacing(&self) -> f64 {
         self.spacing
     }
@@ -130,16 +130,16 @@ impl Grid {
         self.time(self.points() - 1)
     }
 
-    /// The same time without a point to be recorded.
+    /// The same time, without a recorded point.
     pub fn without_points(self) -> Self {
         Self { samples: 0, ..self }
     }
 
-    /// Times that are as many samples apart as fit into `longest` (s), and one at least; half a sample, where points are no
-    /// closer and a whole one is longer. The last point is among every other of them.
+    /// Times with the largest whole number of samples between them that fits into `longest` (s), at least one; or half
+    /// a sample if points are no closer and a whole sample is too long. The last point is among every second of them.
     pub fn steps(&self, longest: f64) -> Vec<f64> {
         let every = self.filter.oversampling;
-        // A hair more, so that rounding loses no sample.
+        // Slightly more, so that rounding loses no sample.
         let samples = (longest / (self.spacing * every as f64) + 1e-6) as usize;
         let stride = if samples == 0 && every == AntiAlias::CONTINUOUS {
             every / 2
@@ -159,7 +159,7 @@ impl Grid {
         }
     }
 
-    /// The most points that stand a sample apart.
+    /// Largest number of points one sample apart.
     fn points_of_phase(&self) -> usize {
         self.points().div_ceil(self.filter.oversampling)
     }
@@ -175,11 +175,11 @@ pub(super) struct Tape {
     grid: Grid,
     /// The point to be recorded next.
     next: usize,
-    /// Each phase of each signal, one after the other.
+    /// The phases of each signal, one after the other.
     tracks: Vec<f64>,
-    /// So many samples at the beginning are alike.
+    /// Number of samples at the beginning that are equal.
     still: usize,
-    /// What was left out.
+    /// Ranges that were left out.
     gaps: Vec<Gap>,
 }
 
@@ -189,7 +189,7 @@ impl Tape {
         Self::over(Vec::new(), grid, signals)
     }
 
-    /// An empty tape in the room of another one.
+    /// An empty tape in the memory of another one.
     pub fn over(mut room: Vec<f64>, grid: Grid, signals: usize) -> Self {
         room.resize(signals * grid.filter.oversampling * grid.points_of_phase(), 0.0);
         Self {
@@ -201,18 +201,18 @@ impl Tape {
         }
     }
 
-    /// Its room, for another tape.
+    /// Its memory, for another tape.
     pub fn into_room(self) -> Vec<f64> {
         self.tracks
     }
 
-    /// The time of the point to be recorded next, where there is one up to `end` (s).
+    /// Time of the point to be recorded next; `None` if it is after `end` (s).
     pub fn next(&self, end: f64) -> Option<f64> {
         let time = self.grid.time(self.next);
         (self.next < self.grid.points() && time <= end).then_some(time)
     }
 
-    /// Records the same value for each signal at all points before `end` (s); there are none yet.
+    /// Records the same value of each signal at all points before `end` (s); no point must have been recorded.
     pub fn record_rest(&mut self, end: f64, values: impl Iterator<Item = f64>) {
         while self.next(end.next_down()).is_some() {
             self.next += 1;
@@ -229,7 +229,7 @@ impl Tape {
         self.still = self.next / every;
     }
 
-    /// Records that point: a value for each signal.
+    /// Records the next point: a value for each signal.
     #[inline]
     pub fn record(&mut self, values: impl Iterator<Item = f64>) {
         let (every, length) = (self.grid.filter.oversampling, self.grid.points_of_phase());
@@ -240,7 +240,7 @@ impl Tape {
         self.next += 1;
     }
 
-    /// Leaves out what lies before a sample at time `t` (s).
+    /// Leaves out the points before a sample at time `t` (s).
     pub fn skip_to(&mut self, t: f64) {
         if self.next(t.next_down()).is_none() {
             return;
@@ -262,7 +262,7 @@ impl Tape {
         }
     }
 
-    /// Fills in what was left out.
+    /// Interpolates the points that were left out.
     pub fn fill_in(&mut self) {
         let (every, length) = (self.grid.filter.oversampling, self.grid.points_of_phase());
         for gap in &self.gaps {
@@ -283,7 +283,7 @@ impl Tape {
         };
         let still = 0..self.still.saturating_sub(2 * AntiAlias::REACH);
         for smooth in std::iter::once(still).chain(self.gaps.iter().map(Gap::all_smooth)) {
-            // What is smooth passes the filter as it is.
+            // A smooth signal passes the filter unchanged.
             let (start, end) = (smooth.start.min(samples), smooth.end.min(samples));
             filter_to(&mut out, start);
             out.extend_from_slice(&self.plain(signal)[start..end]);
@@ -292,7 +292,7 @@ impl Tape {
         out
     }
 
-    /// The samples of a signal as it is.
+    /// The samples of a signal without the filter.
     pub fn plain(&self, signal: usize) -> &[f64] {
         &self.track(signal, 0)[AntiAlias::REACH..][..self.grid.samples]
     }
@@ -321,6 +321,6 @@ fn bessel_i0(x: f64) -> f64 {
         *term *= quarter / f64::from(k * k);
         Some(*term)
     });
-    // Smaller ones change no digit.
+    // Smaller terms change no digit.
     1.0 + terms.take_while(|term| *term > 1e-18).sum::<f64>()
 }

@@ -61,7 +61,7 @@ pub(super) enum Integrator {
 }
 
 impl Integrator {
-    /// Begins an integration, or resumes one after the system has advanced by itself with the effort `spent`.
+    /// Begins an integration, or resumes one after the system has advanced by its own method, with its effort `spent`.
     pub fn go_on<S: System>(
         &mut self,
         system: &mut S,

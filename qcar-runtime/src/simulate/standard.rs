@@ -6,30 +6,30 @@ use crate::road::{Road, RoadError, Shape};
 /// A standard run over a cleat, without a measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Standard {
-    /// m/s.
+    /// Speed, m/s.
     pub speed: f64,
-    /// Of the cleat, m.
+    /// Height of the cleat, m.
     pub height: f64,
-    /// What is driven over.
+    /// The road.
     pub road: Road,
 }
 
-/// m/s.
+/// Speeds, m/s.
 const SPEEDS: [f64; 3] = [20.0 / 3.6, 30.0 / 3.6, 40.0 / 3.6];
-/// m.
+/// Heights, m.
 const HEIGHTS: [f64; 4] = [0.01, 0.02, 0.03, 0.04];
 /// Flat road before the cleat, m.
 const RUN_IN: f64 = 1.5;
 
 const SAMPLE_RATE: f64 = 1000.0;
-/// s: the run-in at the lowest speed, the impact of 0.1 s and an after-shake of a second.
+/// Shortest duration, s: run-in at the lowest speed, impact of 0.1 s and after-shake of one second.
 const DURATION: f64 = 1.5;
 
 impl Standard {
     /// All twelve, each speed with its heights.
     ///
     /// # Errors
-    /// None, as long as the shape of the cleat is a road.
+    /// Never fails if the shape of the cleat is a road.
     pub fn all() -> Result<Vec<Self>, RoadError> {
         let conditions = SPEEDS
             .iter()
@@ -40,7 +40,7 @@ impl Standard {
     /// A run over a cleat of a height (m) at a speed (m/s).
     ///
     /// # Errors
-    /// A height that makes no cleat.
+    /// Fails if the height makes no cleat.
     pub fn over(height: f64, speed: f64) -> Result<Self, RoadError> {
         let road = road(height, speed * duration(speed))?;
         Ok(Self { speed, height, road })
@@ -68,7 +68,8 @@ fn duration(speed: f64) -> f64 {
 
 /// A cleat on a road of a length (m).
 fn road(height: f64, length: f64) -> Result<Road, RoadError> {
-    // The straight part of the descent behind the step, and its return to the flat: those of a common test track.
+    // Lengths of the straight part of the descent after the step and of its return to the flat, as on a common test
+    // track.
     let (descent, blend) = (0.4, 0.17);
     Ok(Road::from_shape(&Shape::Cleat { height, descent, blend }, RUN_IN)?.reaching(length))
 }

@@ -11,16 +11,16 @@ use super::fastest::{ITERATIONS, fastest_rate};
 use super::{After, Effort, Reason, Report, Step, System, all_finite, legs, shortest_step};
 use crate::vectors::{Loops, widest};
 
-/// What the adaptive integrator is held to.
+/// Tolerances and limits of the adaptive integrator.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// Relative tolerance of every state.
     pub relative: f64,
     /// Absolute tolerance of each state, in its unit.
     pub absolute: Vec<f64>,
-    /// The longest step, s: nothing in the right-hand side that lasts longer can be stepped over.
+    /// Longest step, s: no feature of the right-hand side that lasts longer is missed.
     pub longest_step: f64,
-    /// The most steps that are attempted, taken or not.
+    /// Most attempted steps, accepted or not.
     pub most_steps: usize,
 }
 
@@ -31,10 +31,10 @@ pub struct DormandPrince {
     x: Vec<f64>,
     x_end: Vec<f64>,
     stage: Vec<f64>,
-    /// The stages' derivatives, and after each its signals; the last is the first of the next step.
+    /// Derivatives at the stages, each followed by its signals; the last is the first of the next step.
     k: [Vec<f64>; 7],
     quartic: Vec<f64>,
-    /// Over the step, the mean rate of each state and the mean of each signal.
+    /// Mean rate of each state and mean of each signal over the step.
     means: Vec<f64>,
     watch: Watch,
     control: Control,
@@ -60,7 +60,7 @@ impl DormandPrince {
         }
     }
 
-    /// Integrates from `span.0` to `span.1`, on from `x`, and leaves there the state where it stopped.
+    /// Integrates from `span.0` to `span.1`, starting at `x`, which becomes the state at the end.
     ///
     /// `breaks` are the ascending times at which the right-hand side jumps.
     pub fn integrate<S: System>(&mut self, system: &mut S, span: (f64, f64), breaks: &[f64], x: &mut [f64]) -> Report {
@@ -69,8 +69,8 @@ impl DormandPrince {
         self.resume(system, Effort::default(), span, breaks, x)
     }
 
-    /// Goes on where the system had taken over, with steps as long as they were: the system spent `effort` to come to `span.0`
-    /// and `x`. It counts with that of before.
+    /// Continues where the system took over, with the same step length. The system spent `effort` to reach `span.0` and
+    /// `x`, which is added to the earlier effort.
     pub fn resume<S: System>(
         &mut self,
         system: &mut S,
@@ -108,13 +108,13 @@ impl DormandPrince {
         }
     }
 
-    /// Room for signals after the derivatives.
+    /// Allocates memory for signals after the derivatives.
     fn make_room(&mut self, signals: usize) {
         let rows = self.k.iter_mut().chain([&mut self.quartic, &mut self.means]);
         rows.for_each(|row| row.resize(self.x.len() + signals, 0.0));
     }
 
-    /// Integrates over one smooth leg: why and when it stopped.
+    /// Integrates over one smooth leg; returns the stopping reason and time.
     #[inline(always)]
     fn leg<S: System>(&mut self, system: &mut S, (start, end): (f64, f64), shortest: f64) -> (Reason, f64) {
         let mut t = start;
@@ -158,7 +158,7 @@ impl DormandPrince {
         (Reason::End, t)
     }
 
-    /// Enters a leg: its first slope, and a first step where none is known. False where it is not finite.
+    /// Enters a leg: its first slope, and a first step if none is known. False if it is not finite.
     fn begin<S: System>(&mut self, system: &mut S, t: f64, end: f64) -> bool {
         system.enter(t, &mut self.x);
         system.derivative(t, &self.x, &mut self.k[0]);
@@ -176,15 +176,15 @@ impl DormandPrince {
         true
     }
 
-    /// Where the next step should end at the latest, so that no kink is inside it, except one right at its beginning.
+    /// Latest end of the next step, so that it contains no kink except one at its beginning.
     fn bend<S: System>(&self, system: &S, t: f64) -> f64 {
         let from = t + BEHIND * self.control.step;
         system.next_bend(t, &self.x, &self.k[0][..self.x.len()], from)
     }
 
-    /// The longest step that damps the fastest mode as the motion begins; not a number where there is none.
+    /// The longest step that damps the fastest mode at the start; NaN without one.
     ///
-    /// The error control would find it too, but only by growing steps until they fail.
+    /// The error control would find it too, but only after failed steps.
     fn stable_step<S: System>(&mut self, system: &mut S, t: f64) -> f64 {
         let [slope, moved_slope, ..] = &mut self.k;
         self.effort.evaluations += ITERATIONS;
@@ -213,7 +213,7 @@ impl DormandPrince {
         }
     }
 
-    /// The root mean square of `v`, each entry measured by the tolerance of its state.
+    /// RMS of `v`, with each entry relative to the tolerance of its state.
     fn norm(&self, v: &[f64]) -> f64 {
         let scaled = v.iter().zip(&self.x).zip(&self.settings.absolute);
         let sum: f64 = scaled
@@ -228,7 +228,7 @@ impl DormandPrince {
         self.effort.evaluations += 1;
     }
 
-    /// Goes through the stages to `x_end`: the error over the tolerance, not a number where anything is not finite.
+    /// Evaluates the stages up to `x_end`. Returns the error over tolerance, NaN if anything is not finite.
     #[inline(always)]
     fn attempt<S: System>(&mut self, system: &mut S, t: f64, t_end: f64, h: f64) -> f64 {
         combine(&mut self.stage, &self.x, h, A2, [&self.k[0]]);
@@ -265,7 +265,7 @@ impl DormandPrince {
         self.measure(h)
     }
 
-    /// The error estimate over the tolerance, root mean square.
+    /// RMS of the error estimate over tolerance.
     #[inline(always)]
     fn measure(&mut self, h: f64) -> f64 {
         let n = self.x.len();
@@ -275,13 +275,13 @@ impl DormandPrince {
         for i in 0..n {
             let k = [k0[i], k2[i], k3[i], k4[i], k5[i], k6[i]];
             let scale = absolute[i] + self.settings.relative * x[i].abs().max(x_end[i].abs());
-            // An infinite state would hide in its own tolerance; zero times it is not a number.
+            // An infinite state would be hidden by its own tolerance; zero times it is NaN.
             scaled[i] = h * dot(ERROR, k) / scale + 0.0 * (x_end[i] + k6[i]);
         }
         mean_square(scaled).sqrt()
     }
 
-    /// What the dense output of an accepted step needs beside its ends: its quartic, and means.
+    /// Data for the dense output of an accepted step besides its ends: the quartic term, and means.
     #[inline(always)]
     fn make_dense(&mut self) {
         let n = self.quartic.len();
@@ -293,7 +293,7 @@ impl DormandPrince {
         }
     }
 
-    /// Makes an accepted step the past, up to the first event that ends it: that event, with what follows.
+    /// Completes an accepted step, up to the first event that ends it. Returns that event and its consequence.
     #[inline(always)]
     fn settle<S: System>(
         &mut self,
@@ -341,7 +341,7 @@ fn combine<const N: usize>(out: &mut [f64], x: &[f64], h: f64, a: [f64; N], k: [
     }
 }
 
-/// An integration with its arguments: the sums over all states gain by wide vectors.
+/// A loop over all states with its arguments, for wide vectors.
 struct Integration<'a, S> {
     by: &'a mut DormandPrince,
     system: &'a mut S,
@@ -359,7 +359,7 @@ impl<S: System> Loops for Integration<'_, S> {
     }
 }
 
-/// In lanes, so that no sum waits for all others.
+/// In lanes, so that the sums are independent.
 #[inline(always)]
 fn mean_square(v: &[f64]) -> f64 {
     let (chunks, rest) = v.as_chunks::<4>();
@@ -378,13 +378,13 @@ fn dot<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
     (1..N).fold(a[0] * b[0], |sum, i| sum + a[i] * b[i])
 }
 
-/// Several events may happen at one time, but so many in a row are one that comes back.
+/// Largest number of events at one time; more in succession are a recurring one.
 const MOST_AT_ONCE: usize = 4;
 
-/// A kink that is nearer than this share of a step counts as passed: kinks cannot be predicted better.
+/// Share of a step within which a kink counts as passed, since it cannot be predicted more accurately.
 const BEHIND: f64 = 0.05;
 
-/// Modes of up to so much a step are damped, with a margin to where they are not, 5.7.
+/// Product of step and rate up to which modes are damped, with a margin to the limit of 5.7.
 const STABLE: f64 = 5.2;
 
 // The tableau RK5(4)7S; the second stage has no weight in A7, ERROR and DENSE, and the seventh none in A7.

@@ -1,16 +1,16 @@
-//! Watching event functions: a change of sign over a step, located on its dense output.
+//! Detects events: changes of sign over a step, located on its dense output.
 
 use super::{After, Effort, Event, Step, System};
 
-/// How far into the first step of a leg its signs are read.
+/// Distance into the first step of a leg at which the signs are read, relative to the step.
 pub(super) const LOOK_AHEAD: f64 = 1e-3;
 
-/// The sign in force of each event function, with room to read them.
+/// Current sign of each event function, with buffers.
 pub(super) struct Watch {
     positive: Vec<bool>,
     values: Vec<f64>,
     at_end: Vec<f64>,
-    /// The state at the crossing that was found last.
+    /// The state at the crossing found last.
     pub state: Vec<f64>,
 }
 
@@ -32,10 +32,10 @@ impl Watch {
         }
     }
 
-    /// Reads the signs where a leg begins.
+    /// Reads the signs at the beginning of a leg.
     ///
-    /// A function whose event began the leg is zero to rounding there, and its sign means nothing: the signs are read
-    /// a small time `ahead` along the slope.
+    /// A function whose event began the leg is zero to rounding there, and its sign has no meaning. So the signs are
+    /// read a short time `ahead` along the slope.
     pub fn begin<S: System>(&mut self, system: &mut S, t: f64, ahead: f64, x: &[f64], slope: &[f64]) {
         if self.positive.is_empty() {
             return;
@@ -49,7 +49,7 @@ impl Watch {
         }
     }
 
-    /// Tells the system of the events of a step in the order of time, up to the first that ends the step.
+    /// Reports the events of a step to the system in the order of time, up to the first that ends the step.
     pub fn first_cut<S: System>(
         &mut self,
         system: &mut S,
@@ -76,7 +76,7 @@ impl Watch {
         None
     }
 
-    /// The earliest change of sign that was not yet taken; its state is left in `state`.
+    /// The earliest change of sign that was not reported yet; `state` becomes the state there.
     fn next<S: System>(&mut self, system: &mut S, step: &Step<'_>) -> Option<Crossing> {
         let mut first: Option<Crossing> = None;
         for index in 0..self.positive.len() {
@@ -94,7 +94,7 @@ impl Watch {
         Some(crossing)
     }
 
-    /// The first time with the new sign: bisection, which no shape of the function can lead astray.
+    /// The first time with the new sign, by bisection, which is safe for any shape of the function.
     fn locate<S: System>(&mut self, system: &mut S, step: &Step<'_>, index: usize, rising: bool) -> f64 {
         let (mut before, mut after) = (step.start, step.end);
         loop {

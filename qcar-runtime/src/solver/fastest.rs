@@ -1,10 +1,10 @@
-//! The fastest mode of a system, which limits the steps of an explicit method whatever the tolerance.
+//! The fastest mode of a system, which limits the steps of an explicit method for any tolerance.
 
 use super::System;
 
 pub(super) const ITERATIONS: usize = 12;
-/// Over so many of the last iterations the growth is averaged; an even number, since what a vibration trades between
-/// position and velocity comes back after two.
+/// Number of the last iterations over which the growth is averaged; even, since a vibration exchanges position and
+/// velocity over two iterations.
 const AVERAGED: usize = 4;
 
 /// The largest modulus, 1/s, of the eigenvalues of the Jacobian at `x`, where the derivative is `slope`. It takes
@@ -12,7 +12,7 @@ const AVERAGED: usize = 4;
 ///
 /// Power iteration with difference quotients, as in codes of stabilised Runge–Kutta methods (B. P. Sommeijer, L. F.
 /// Shampine, J. G. Verwer, "RKC", J. Comp. Appl. Math. 88, 1998). `scales` are displacements of the states that are
-/// too small to matter. Zero, infinite or not a number where the derivative has no such thing.
+/// too small to matter. Zero, infinite or NaN if the derivative has no such eigenvalue.
 pub(super) fn fastest_rate<S: System>(
     system: &mut S,
     t: f64,
@@ -24,7 +24,7 @@ pub(super) fn fastest_rate<S: System>(
         let scaled = v.iter().zip(scales).map(|(v, scale)| v / scale);
         scaled.map(|v| v * v).sum::<f64>().sqrt()
     };
-    // Moved alike, a system may be at rest again; by a ramp it hardly is.
+    // If all states moved equally, a system might be at rest again; with a ramp this is unlikely.
     for (i, (moved, scale)) in moved.iter_mut().zip(scales).enumerate() {
         *moved = scale * (1.0 + i as f64);
     }

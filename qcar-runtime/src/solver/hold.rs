@@ -8,17 +8,17 @@ use nalgebra::DMatrix;
 use super::matrix::Matrix;
 use crate::vectors::{Loops, widest};
 
-/// What a step does to states and forces.
+/// Effect of a step on states and forces.
 pub struct Hold {
-    /// Row by row, the factors of each state, of each force at the beginning of a step, and of each at its end.
+    /// Row by row, the factors of each state, of each force at the beginning of a step, and of each force at its end.
     factors: Vec<f64>,
-    /// Those of the forces at the end.
+    /// The factors of the forces at the end.
     of_end: DMatrix<f64>,
 }
 
 impl Hold {
-    /// For the matrix `a` and forces on the states `forced`, in steps of `step` (s). None where the system is not finite, or
-    /// moves a million times too much in a step.
+    /// For the matrix `a` and forces on the states `forced`, in steps of `step` (s). `None` if the system is not
+    /// finite, or if its norm times the step exceeds a million.
     pub fn new(a: &DMatrix<f64>, forced: &[usize], step: f64) -> Option<Self> {
         let (n, m) = (a.nrows(), forced.len());
         // In time of a step: the states, the forces at its beginning, and what these change by until its end.
@@ -47,13 +47,13 @@ impl Hold {
         })
     }
 
-    /// What forces at the end of a step add to the states there: `Γ₁`.
+    /// Contribution of the forces at the end of a step to the states there: `Γ₁`.
     pub fn of_end(&self) -> &DMatrix<f64> {
         &self.of_end
     }
 
-    /// Writes the next states of some systems: of each state, and of each force at both ends of the step, there is a value
-    /// for every system, one after the other.
+    /// Writes the next states of several systems: each state, and each force at both ends of the step, has a value for
+    /// every system, one after the other.
     pub fn step(&self, systems: usize, states: &[f64], forces: [&[f64]; 2], next: &mut [f64]) {
         widest(Step {
             factors: &self.factors,

@@ -9,7 +9,7 @@ pub struct Rk4 {
     most_steps: usize,
     x: Vec<f64>,
     x_end: Vec<f64>,
-    /// The stages' derivatives, and that at the end of the step, which the dense output needs.
+    /// Derivatives at the stages, and at the end of the step for the dense output.
     k: [Vec<f64>; 5],
     watch: Watch,
     effort: Effort,
@@ -18,8 +18,8 @@ pub struct Rk4 {
 impl Rk4 {
     /// An integrator for systems of `states` states and `events` event functions.
     ///
-    /// No step is longer than `step` (s); each leg between breaks is divided into equal ones. After `most_steps` it
-    /// gives up: events that crowd together without end, as those of a ball coming to rest, must not keep it for ever.
+    /// No step is longer than `step` (s); each leg between breaks is divided into equal steps. It stops after
+    /// `most_steps`, since events may accumulate without end, as those of a ball that comes to rest.
     pub fn new(step: f64, most_steps: usize, states: usize, events: usize) -> Self {
         let row = || vec![0.0; states];
         Self {
@@ -33,7 +33,7 @@ impl Rk4 {
         }
     }
 
-    /// Integrates from `span.0` to `span.1`, on from `x`, and leaves there the state where it stopped.
+    /// Integrates from `span.0` to `span.1`, starting at `x`, which becomes the state at the end.
     ///
     /// `breaks` are the ascending times at which the right-hand side jumps.
     pub fn integrate<S: System>(&mut self, system: &mut S, span: (f64, f64), breaks: &[f64], x: &mut [f64]) -> Report {
@@ -56,7 +56,7 @@ impl Rk4 {
         }
     }
 
-    /// Integrates over one smooth leg; an event that restarts divides what is left of it anew.
+    /// Integrates over one smooth leg; after an event that restarts, the rest is divided anew.
     fn leg<S: System>(&mut self, system: &mut S, (start, end): (f64, f64)) -> (Reason, f64) {
         let mut t = start;
         while t < end {
@@ -105,7 +105,7 @@ impl Rk4 {
         all_finite(&self.x_end) && all_finite(&self.k[4][..self.x.len()])
     }
 
-    /// Makes a step the past, up to the first event that ends it: what follows, which event, and when.
+    /// Completes a step, up to the first event that ends it. Returns its consequence, position and time.
     fn settle<S: System>(&mut self, system: &mut S, t: f64, t_end: f64) -> Option<(After, usize, f64)> {
         self.effort.accepted += 1;
         let states = [&self.x[..], &self.x_end[..]];
@@ -136,8 +136,8 @@ impl Rk4 {
     }
 }
 
-/// One step of length `h` from `x`, where the slope is `k[0]`, to `x_end`, where it is `k[4]`; `derivative` is told which part of
-/// the step has passed.
+/// One step of length `h` from `x`, where the slope is `k[0]`, to `x_end`, where it is `k[4]`. `derivative` gets the
+/// part of the step as an argument.
 pub(crate) fn step(
     mut derivative: impl FnMut(f64, &[f64], &mut [f64]),
     h: f64,

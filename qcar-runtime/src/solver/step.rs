@@ -3,44 +3,44 @@
 /// An accepted step, from `start` to `end`.
 ///
 /// The interpolant is the quartic of Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, II.6: the
-/// cubic Hermite polynomial through both ends and both slopes, plus a term that the method's stages give. It is
+/// cubic Hermite polynomial through both ends and both slopes, plus a term from the stages of the method. It is
 /// continuous with its slope from step to step, and accurate to fourth order for Dormand–Prince, third for RK4.
 #[derive(Clone, Copy, Debug)]
 pub struct Step<'a> {
-    /// Where it begins, s.
+    /// Start, s.
     pub start: f64,
-    /// Where it ends, s; before `start + length` where an event cut it short.
+    /// End, s; before `start + length` if an event shortened it.
     pub end: f64,
     /// The length over which the interpolant is defined, s.
     pub(super) length: f64,
     /// State at `start` and at `start + length`.
     pub(super) states: [&'a [f64]; 2],
-    /// Derivative at `start` and at `start + length`, and after it the signals.
+    /// Derivative at `start` and at `start + length`, followed by the signals.
     pub(super) slopes: [&'a [f64]; 2],
-    /// The term of fourth order divided by the length; empty for a cubic.
+    /// The fourth-order term divided by the length; empty for a cubic.
     pub(super) quartic: &'a [f64],
-    /// The mean rate of each state over the step, and after it the mean of each signal.
+    /// Mean rate of each state over the step, followed by the mean of each signal.
     pub(super) means: &'a [f64],
-    /// The estimated error over what is tolerated, of as many such steps as make the longest that is allowed; infinite
-    /// where there is no estimate, or where an event has cut the step short and the stages of the method lie beyond it.
+    /// Estimated error over tolerance of as many such steps as make the longest allowed one; infinite without an
+    /// estimate, or if an event has shortened the step, so that stages of the method are beyond its end.
     pub(super) error: f64,
 }
 
-/// An error so far below the tolerance shows a smooth step.
+/// Error over tolerance below which a step counts as smooth.
 const SMOOTH: f64 = 0.3;
 
 impl<'a> Step<'a> {
-    /// The state where the step begins.
+    /// The state at the start of the step.
     pub fn start_state(&self) -> &'a [f64] {
         self.states[0]
     }
 
-    /// The state where the method's step ends.
+    /// The state at the end of the step of the method.
     pub fn end_state(&self) -> &'a [f64] {
         self.states[1]
     }
 
-    /// The rates of the states where the step ends, and after them the signals; none where an event has cut it short.
+    /// The rates of the states at the end of the step, followed by the signals; `None` if an event has shortened it.
     pub fn end_rates(&self) -> Option<&'a [f64]> {
         self.error.is_finite().then_some(self.slopes[1])
     }
@@ -67,8 +67,8 @@ impl<'a> Step<'a> {
     /// Writes the rates of the states from place `first` on at time `t` of the step, and after them the signals: the
     /// slopes of the interpolants of the states, and of those of the signals' integrals.
     ///
-    /// They are exact at both ends; between them they are accurate to the order of the dense output less one. To be asked
-    /// only where [`Step::has_rates`].
+    /// They are exact at both ends; between them they are accurate to the order of the dense output minus one. Call it
+    /// only if [`Step::has_rates`].
     pub fn rates_at(&self, t: f64, first: usize, rates: &mut [f64]) {
         let n = rates.len();
         let [y0, y1] = self.slopes.map(|slopes| &slopes[first..][..n]);
@@ -81,11 +81,11 @@ impl<'a> Step<'a> {
         }
     }
 
-    /// True where [`Step::rates_at`] is as good between the ends of the step as at its ends.
+    /// True if [`Step::rates_at`] is as accurate inside the step as at its ends.
     ///
-    /// That asks for a step shorter than the tolerance would have it, as it is where something else limits its length:
-    /// the interpolant is of lower order than the method, and does not show a kink inside the step. A kink makes the
-    /// tolerance shorten the step, and the same error in a shorter step is one of a signal that is further off.
+    /// This needs a step shorter than the tolerance requires, limited by something else: the interpolant is of lower
+    /// order than the method, and does not show a kink inside the step. A kink makes the tolerance shorten the step,
+    /// and the same error in a shorter step is that of a less accurate signal.
     pub fn has_rates(&self) -> bool {
         self.error < SMOOTH
     }

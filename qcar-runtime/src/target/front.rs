@@ -3,7 +3,7 @@
 //! NSGA-II (Deb, Pratap, Agarwal and Meyarivan, IEEE Trans. Evol. Comp. 6, 2002) with its constrained domination.
 
 use super::task::{Sense, TOLERANCE, Task};
-use crate::progress::Told;
+use crate::progress::OnProgress;
 use crate::random::SplitMix;
 
 /// The effort of the search for the front.
@@ -70,7 +70,7 @@ pub fn front(
     aims: &[(usize, Sense)],
     known: &[Vec<f64>],
     settings: Settings,
-    told: Told<'_>,
+    on_progress: OnProgress<'_>,
 ) -> Front {
     let mut random = SplitMix::new(settings.seed);
     let mut points: Vec<Vec<f64>> = known.iter().map(|design| task.places(design)).collect();
@@ -79,7 +79,7 @@ pub fn front(
     let mut count = settings.population + known.len();
     sort(&mut members);
     for generation in 0..settings.generations {
-        told(generation, settings.generations);
+        on_progress(generation, settings.generations);
         members.truncate(settings.population);
         if members.len() < 2 {
             break;
@@ -93,7 +93,7 @@ pub fn front(
         members.extend(evaluated(task, aims, &children));
         sort(&mut members);
     }
-    told(settings.generations, settings.generations);
+    on_progress(settings.generations, settings.generations);
     Front {
         points: points_of(task, members),
         evaluated: count,

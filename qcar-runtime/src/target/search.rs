@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::quadratic::Quadratic;
 use super::task::{Task, is_met};
-use crate::progress::Told;
+use crate::progress::OnProgress;
 use crate::random::SplitMix;
 
 /// Result of a search.
@@ -45,12 +45,12 @@ const MARGIN: f64 = 1e-4;
 /// Least cost of a knob, which makes every step unique.
 const LEAST_COST: f64 = 1e-4;
 
-/// Searches, and reports its rounds to `told`. `None` if neither an evaluated design nor today's has results.
-pub fn search(task: &Task<'_>, seed: u64, told: Told<'_>) -> Option<Found> {
+/// Searches, and reports its rounds to `on_progress`. `None` if neither an evaluated design nor today's has results.
+pub fn search(task: &Task<'_>, seed: u64, on_progress: OnProgress<'_>) -> Option<Found> {
     let starts = starts(task, seed);
-    told(0, 2);
+    on_progress(0, 2);
     let ends: Vec<State> = starts.into_par_iter().map(|start| settle(task, start)).collect();
-    told(1, 2);
+    on_progress(1, 2);
     let effort = ends
         .iter()
         .fold([LOOKS, 0], |sum, end| [sum[0] + end.effort[0], sum[1] + end.effort[1]]);
@@ -59,7 +59,7 @@ pub fn search(task: &Task<'_>, seed: u64, told: Told<'_>) -> Option<Found> {
     if task.knobs.iter().any(|knob| knob.step.is_some()) {
         best = had(task, best);
     }
-    told(2, 2);
+    on_progress(2, 2);
     Some(found(task, best))
 }
 

@@ -9,7 +9,7 @@
 //! may turn out: then the probability is that over designs and results together.
 
 use super::task::{Task, is_met};
-use crate::progress::Told;
+use crate::progress::OnProgress;
 use crate::random::SplitMix;
 
 /// The requirements on a box, and the effort of the search for it.
@@ -87,7 +87,7 @@ struct Drawn {
 }
 
 /// The largest box about a good design that was found; none where `known` are not good and no other was met.
-pub fn space(task: &Task<'_>, known: &[Vec<f64>], settings: Settings, told: Told<'_>) -> Option<Space> {
+pub fn space(task: &Task<'_>, known: &[Vec<f64>], settings: Settings, on_progress: OnProgress<'_>) -> Option<Space> {
     let mut random = SplitMix::new(settings.seed);
     let real = task.without_margins();
     let start = start(task, known, &mut random, settings.samples);
@@ -96,7 +96,7 @@ pub fn space(task: &Task<'_>, known: &[Vec<f64>], settings: Settings, told: Told
     let mut evaluated = 2 * settings.samples;
     let rounds = settings.rounds + FINAL_ROUNDS;
     for round in 0..settings.rounds {
-        told(round, rounds);
+        on_progress(round, rounds);
         let growth = GROWTH * (1.0 - 0.9 * round as f64 / settings.rounds as f64);
         let before = sides.clone();
         grow(&mut sides, growth);
@@ -111,7 +111,7 @@ pub fn space(task: &Task<'_>, known: &[Vec<f64>], settings: Settings, told: Told
     let confirming = CONFIRMING * judges;
     let enough = probably_enough(confirming, settings.probability);
     for round in 0..FINAL_ROUNDS {
-        told(settings.rounds + round, rounds);
+        on_progress(settings.rounds + round, rounds);
         let around = grown(&sides, SURROUNDINGS);
         if around == sides {
             break;
@@ -132,7 +132,7 @@ pub fn space(task: &Task<'_>, known: &[Vec<f64>], settings: Settings, told: Told
             None => sides = shrunk(&shrunk(&sides)),
         }
     }
-    told(rounds, rounds);
+    on_progress(rounds, rounds);
     Some(confirmed(
         &real,
         sides,

@@ -7,13 +7,14 @@ use crate::campaign::{History, Quantity, Spacing, Sweep, Test};
 use crate::error::{InputError, Place, Problem};
 use crate::spectrum::transform;
 
-/// Frequencies unless others are asked for.
+/// Default number of frequencies.
 const COUNT: usize = 300;
-/// A time history is asked where it holds at least this share of its strongest power.
+/// A time history is evaluated where it has at least this share of its largest power.
 const EXCITED: f64 = 1e-3;
-/// A sweep is there where it holds at least this share of its typical power; the edge of a cut leaks less.
+/// A sweep counts as present where it has at least this share of its typical power; leakage at the edge of a cut is
+/// smaller.
 const SWEPT: f64 = 0.05;
-/// Cycles of the lowest frequency in the record, at least.
+/// Fewest cycles of the lowest frequency in the record.
 const CYCLES: f64 = 5.0;
 
 /// `count` frequencies from `first` to `last`, Hz, evenly spaced on a logarithmic scale.
@@ -26,7 +27,7 @@ pub fn logarithmic(first: f64, last: f64, count: usize) -> Vec<f64> {
     frequencies
 }
 
-/// The frequencies to estimate at, once the record is known to hold them.
+/// The frequencies of the estimate, after the record has been checked.
 pub(super) fn frequencies(
     history: &History,
     reference: &Point,
@@ -58,8 +59,8 @@ pub(super) fn frequencies(
     Ok(frequencies)
 }
 
-/// Centre (Hz) and mean power of logarithmic bands, in units in which a sweep holds the same power in all of them:
-/// the power of a velocity, over the time that the sweep spends there.
+/// Centre (Hz) and mean power of logarithmic bands, normalised so that a sweep has the same power in all of them: the
+/// power of a velocity over the time that the sweep spends there.
 fn bands(signal: &[f64], history: &History, quantity: Quantity) -> Vec<(f64, f64)> {
     const WIDTH: f64 = 1.05;
     let power: Vec<f64> = transform(signal).iter().map(|line| line.norm_sqr()).collect();
@@ -91,14 +92,14 @@ fn evened(f: f64, test: &Test, quantity: Quantity) -> f64 {
     }
 }
 
-/// Lowest and highest frequency that holds at least `floor`.
+/// Lowest and highest frequency with at least the power `floor`.
 fn excited(bands: &[(f64, f64)], floor: f64) -> (f64, f64) {
     let mut held = bands.iter().filter(|band| band.1 >= floor).map(|band| band.0);
     let first = held.next().unwrap_or(f64::INFINITY);
     (first, held.next_back().unwrap_or(first))
 }
 
-/// The median over the bands that a sweep should hold.
+/// Median over the bands of a sweep.
 fn typical(sweep: &Sweep, bands: &[(f64, f64)]) -> f64 {
     let swept = |f: f64| (sweep.start_frequency..=sweep.end_frequency).contains(&f);
     let mut powers: Vec<f64> = bands.iter().filter(|band| swept(band.0)).map(|band| band.1).collect();
@@ -106,14 +107,14 @@ fn typical(sweep: &Sweep, bands: &[(f64, f64)]) -> f64 {
     powers.get(powers.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// A sweep that was cut holds no power beyond its cut.
+/// A sweep that was cut has no power beyond the cut.
 fn reaches_its_ends(
     history: &History,
     reference: &Point,
     sweep: &Sweep,
     bands: &[(f64, f64)],
 ) -> Result<(), InputError> {
-    /// The ends are faded in and out: how far inside them power is asked for.
+    /// The ends are faded: distance from them at which power is required.
     const INSIDE: f64 = 1.15;
     let (first, last) = excited(bands, SWEPT * typical(sweep, bands));
     let place = || Place::Name(reference.to_string());
@@ -132,14 +133,14 @@ fn reaches_its_ends(
     Ok(())
 }
 
-/// A sweep of another size than declared is in another unit, or the mean of sensors with opposite signs.
+/// A sweep of another amplitude than declared has another unit, or is the mean of sensors with opposite signs.
 fn has_its_velocity(
     history: &History,
     reference: &Point,
     sweep: &Sweep,
     bands: &[(f64, f64)],
 ) -> Result<(), InputError> {
-    /// Rigs deviate from what they are told; units and signs from each other by more.
+    /// Rigs deviate from their set values by less than units and signs do.
     const DEVIATION: f64 = 2.0;
     if reference.quantity == Quantity::Force {
         return Ok(());

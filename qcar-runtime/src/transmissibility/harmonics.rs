@@ -1,10 +1,11 @@
-//! The harmonics of a swept sine: what answers at once, twice and three times the frequency of the excitation.
+//! The harmonics of a swept sine: responses at the frequency of the excitation and at twice and three times that
+//! frequency.
 //!
-//! The excitation is written as `Re a(t)` with `a = A exp(jφ)`, and its n-th multiple as `Re A exp(jnφ)`. Where a sweep
-//! passes f, f/2 and f/3 at different times, the spectra of these multiples around f differ in their slope of phase, so
-//! that one least squares over the lines around f tells the responses to them apart. They are the generalised frequency
-//! responses of a sweep (A. Farina, AES Convention 108, 2000; A. Novák et al., IEEE Trans. Instrum. Meas. 59, 2010),
-//! without the time window that separates them there and smears a lightly damped mode.
+//! The excitation is written as `Re a(t)` with `a = A exp(jφ)`, and its n-th multiple as `Re A exp(jnφ)`. A sweep
+//! passes f, f/2 and f/3 at different times, so the spectra of these multiples around f have different slopes of the
+//! phase, and one least squares over the lines around f separates the responses to them. They are the generalised
+//! frequency responses of a sweep (A. Farina, AES Convention 108, 2000; A. Novák et al., IEEE Trans. Instrum. Meas. 59,
+//! 2010), without the time window of these methods, which smears a lightly damped mode.
 
 use nalgebra::{Complex, DMatrix, DVector};
 use rayon::prelude::*;
@@ -12,51 +13,51 @@ use rayon::prelude::*;
 use super::local::{neighbourhood, pseudo_inverse};
 use crate::spectrum::{synthesize, transform};
 
-/// How the neighbourhood of a frequency is chosen.
+/// Neighbourhood of a frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Neighbourhood {
-    /// Lines on each side, at least.
+    /// Fewest lines on each side.
     pub lines: usize,
-    /// Half width relative to the frequency, where that holds more lines.
+    /// Half width relative to the frequency, if that contains more lines.
     pub width: f64,
 }
 
 /// The response of one signal at one frequency to the multiples of the excitation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HarmonicLine {
-    /// Hz, that of the response.
+    /// Frequency of the response, Hz.
     pub frequency: f64,
-    /// For each order asked for: response over the amplitude of the excitation at `frequency / order`, with the phase
-    /// of the excitation taken `order` times. `None` where the sweep does not pass there.
+    /// For each order: response over the amplitude of the excitation at `frequency / order`, relative to `order` times
+    /// the phase of the excitation. `None` if the sweep does not pass that frequency.
     pub value: Vec<Option<Complex<f64>>>,
-    /// Variances `E|value - truth|²`.
+    /// Variances `E|value - truth|²`, for each order.
     pub variance: Vec<f64>,
 }
 
-/// The moment in which a sweep passes a frequency.
+/// The passage of a sweep through a frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Passage {
-    /// s from the first sample.
+    /// Time, s after the first sample.
     pub time: f64,
-    /// In the unit of the excitation.
+    /// Amplitude, in the unit of the excitation.
     pub amplitude: f64,
 }
 
-/// A sweep as the sum of its multiples needs it.
+/// A sweep with the spectra of its multiples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Swept {
     rate: f64,
     samples: usize,
-    /// Hz, where the excitation goes.
+    /// Band of the excitation, Hz.
     band: (f64, f64),
-    /// Spectra of the multiples, order after order from 1.
+    /// Spectra of the multiples, from order 1 on.
     multiples: Vec<Vec<Complex<f64>>>,
     envelope: Vec<f64>,
     phase: Vec<f64>,
 }
 
 impl Swept {
-    /// Takes a measured excitation at `rate` Hz that sweeps over `band` (Hz), for the orders 1 to `orders`.
+    /// Prepares a measured excitation at `rate` Hz that sweeps over `band` (Hz), for the orders 1 to `orders`.
     pub fn new(excitation: &[f64], rate: f64, band: (f64, f64), orders: usize) -> Self {
         let (re, im) = analytic(excitation, rate, band);
         let envelope: Vec<f64> = re.iter().zip(&im).map(|(re, im)| re.hypot(*im)).collect();
@@ -69,7 +70,7 @@ impl Swept {
                 .collect();
             transform(&signal)
         };
-        // The first is the measurement itself: what the filter left out of it excites too.
+        // The first order is the measurement itself, since the part outside the filter excites too.
         let first = std::iter::once(transform(excitation));
         Self {
             rate,
@@ -81,11 +82,11 @@ impl Swept {
         }
     }
 
-    /// When the excitation passes `frequency` (Hz), s from the first sample, and its amplitude there: the medians over the
-    /// time that it is within a few percent of it; `None` where it never is.
+    /// Time (s after the first sample) and amplitude at which the excitation passes `frequency` (Hz): medians over the
+    /// time within a few percent of it. `None` if it never passes.
     pub fn passage(&self, frequency: f64) -> Option<Passage> {
         const NEAR: f64 = 0.04;
-        // Half a period to each side: a difference over that span is the mean frequency of one period.
+        // Half a period on each side: a difference over that span is the mean frequency of one period.
         let half = (0.5 * self.rate / frequency).ceil() as usize;
         let near = (half..self.samples.saturating_sub(half)).filter(|&k| {
             let cycles = (self.phase[k + half] - self.phase[k - half]) / std::f64::consts::TAU;
@@ -99,12 +100,12 @@ impl Swept {
         Some(Passage { time, amplitude })
     }
 
-    /// The responses of a signal of the same record at `frequencies` (Hz, increasing).
+    /// Responses of a signal of the same record at `frequencies` (Hz, increasing).
     pub fn responses(&self, signal: &[f64], frequencies: &[f64], around: Neighbourhood) -> Vec<HarmonicLine> {
         self.responses_in(&transform(signal), frequencies, around)
     }
 
-    /// The same of the signal's spectrum.
+    /// The same from the spectrum of the signal.
     pub fn responses_in(
         &self,
         spectrum: &[Complex<f64>],
@@ -157,7 +158,7 @@ impl Swept {
     }
 }
 
-/// `Y (1 + a δ) = Σ_n (b_n0 + b_n1 δ) X_n + t`: value and variance of each `b_n0`.
+/// Value and variance of each `b_n0` in `Y (1 + a δ) = Σ_n (b_n0 + b_n1 δ) X_n + t`.
 fn fit(references: &[&[Complex<f64>]], response: &[Complex<f64>], offsets: &[f64]) -> Vec<(Complex<f64>, f64)> {
     let unknowns = 2 * references.len() + 2;
     let regressors = DMatrix::from_fn(offsets.len(), unknowns, |k, unknown| {

@@ -5,13 +5,13 @@ use nalgebra::{Complex, DMatrix};
 /// The responses of several points to the first of them, at one frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
-    /// Hz.
+    /// Frequency, Hz.
     pub frequency: f64,
-    /// One for each point; that of the first is 1.
+    /// Response of each point; that of the first is 1.
     pub value: Vec<Complex<f64>>,
     /// `E[e_i conj(e_j)]` of the errors of the values; zero for the first.
     pub covariance: DMatrix<Complex<f64>>,
-    /// Share of each point's power that the first explains.
+    /// Coherence of each point with the first.
     pub coherence: Vec<f64>,
 }
 
@@ -29,7 +29,7 @@ impl Line {
         error.max(0.0) / self.value[from].norm_sqr()
     }
 
-    /// Relates all points but the first to what a hold makes of the first.
+    /// Relates all points but the first to the held signal of the first.
     pub(super) fn release(&mut self, hold: Complex<f64>) {
         self.value[1..].iter_mut().for_each(|value| *value /= hold);
         self.covariance /= Complex::from(hold.norm_sqr());

@@ -1,9 +1,9 @@
 //! Local rational functions on the spectrum of the whole record.
 //!
 //! Around a frequency f the spectrum of a response is `Y = (b₀ + b₁δ)/(1 + a₁δ) X + t₀/(1 + a₁δ) + noise`, with δ the
-//! distance of a line from f. The denominator follows a mode through its resonance, where polynomials of the few lines
-//! across it cannot; the last term is the leakage of what rings on beyond the end of the record, which has the same
-//! poles. Multiplied by the denominator this is linear in b₀, b₁, t₀ and a₁, and b₀ is the response at f.
+//! distance of a line from f. The denominator follows a mode through its resonance, which polynomials over the few
+//! lines there cannot; the last term is the leakage of the response that continues after the end of the record, which
+//! has the same poles. Multiplied by the denominator this is linear in b₀, b₁, t₀ and a₁, and b₀ is the response at f.
 
 use nalgebra::linalg::SVD;
 use nalgebra::{Complex, DMatrix, DVector};
@@ -12,11 +12,11 @@ use rayon::prelude::*;
 use super::line::Line;
 use crate::spectrum::transform;
 
-/// b₀, b₁, t₀ and a₁.
+/// Number of unknowns: b₀, b₁, t₀ and a₁.
 const UNKNOWNS: usize = 4;
 
-/// The responses of all `signals` to the first, from at least `least` lines on each side of each frequency, or more
-/// where `width` times the frequency holds more.
+/// Responses of all `signals` to the first, from at least `least` lines on each side of each frequency, or more if
+/// `width` times the frequency contains more.
 pub(super) fn lines(signals: &[Vec<f64>], rate: f64, frequencies: &[f64], least: usize, width: f64) -> Vec<Line> {
     let spacing = rate / signals[0].len() as f64;
     let spectra: Vec<_> = signals.par_iter().map(|signal| transform(signal)).collect();
@@ -28,7 +28,7 @@ pub(super) fn lines(signals: &[Vec<f64>], rate: f64, frequencies: &[f64], least:
     frequencies.par_iter().map(line).collect()
 }
 
-/// `2 half + 1` lines around `centre`, moved where they would hold line 0, which is the offset, or leave the spectrum.
+/// `2 half + 1` lines around `centre`, shifted if they would contain line 0, the offset, or leave the spectrum.
 pub(super) fn neighbourhood(centre: usize, half: usize, count: usize) -> std::ops::Range<usize> {
     let length = (2 * half + 1).min(count - 1);
     let first = centre.saturating_sub(half).clamp(1, count - length);
@@ -99,10 +99,10 @@ fn fit(reference: &[Complex<f64>], response: &[Complex<f64>], offsets: &[f64]) -
     }
 }
 
-/// By way of unit columns; where the response is flat, b₁ and a₁ cannot be told apart and share the part that they explain.
+/// Uses columns of unit length. If the response is flat, b₁ and a₁ are not separable and share the part that they
+/// explain.
 ///
-/// Not numbers where the regressors are not, as those of a simulation that has diverged: a decomposition of such a matrix
-/// never ends.
+/// NaN if the regressors are not finite, as in a diverged simulation: the decomposition of such a matrix would not end.
 pub(super) fn pseudo_inverse(regressors: &DMatrix<Complex<f64>>) -> DMatrix<Complex<f64>> {
     const SAME: f64 = 1e-10;
     const MOST_ITERATIONS: usize = 10_000;

@@ -1,4 +1,4 @@
-//! From the geometry of a contact and the law of a link to the force on the wheel.
+//! The force on the wheel from the geometry of a contact and the law of a link.
 
 use super::Touch;
 use crate::model::Contact;
@@ -7,23 +7,23 @@ impl Touch {
     /// The force of the tyre on its wheel, `[z, x]` as in [`Contact::force`], by `law(s, v)`: the resisting force (N,
     /// positive in tension) at stretch `s` (m, negative here) and rate `v` (m/s).
     ///
-    /// - The spring, `law(s, 0)`, pushes along the direction of the contact; where it would pull, it is zero.
-    /// - Growth pushes along its own direction with what the law has more at the rate of growth.
-    /// - Shrinkage pulls along its own direction with what the law has less at the rate of shrinkage, but never more
-    ///   than the spring pushes. So the total never pulls against the direction of the contact.
+    /// - The spring, `law(s, 0)`, pushes along the direction of the contact; it is zero instead of pulling.
+    /// - Growth pushes along its own direction with the increase of the law by the rate of growth.
+    /// - Shrinkage pulls along its own direction with the decrease of the law by the rate of shrinkage, but at most as
+    ///   much as the spring pushes. So the total never pulls against the direction of the contact.
     #[inline(always)]
     pub fn force(&self, law: impl Fn(f64, f64) -> f64) -> Contact {
         self.pushing(self.strains().map(|[s, v]| law(s, v)))
     }
 
-    /// Stretches and rates at which the law is asked: at rest, growing and shrinking.
+    /// Stretches and rates at which the law is evaluated: at rest, growing and shrinking.
     #[inline(always)]
     pub(crate) fn strains(&self) -> [[f64; 2]; 3] {
         let s = -self.deflection;
         [[s, 0.0], [s, -self.growth.rate], [s, self.shrinkage.rate]]
     }
 
-    /// [`Touch::force`] by what the law says of these.
+    /// [`Touch::force`] from the law at these points.
     #[inline(always)]
     pub(crate) fn pushing(&self, [at_rest, growing, shrinking]: [f64; 3]) -> Contact {
         let spring = (-at_rest).max(0.0);

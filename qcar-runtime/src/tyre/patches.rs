@@ -1,4 +1,4 @@
-//! Where the road is inside the circle: one patch after the other, from the rear to the front.
+//! Parts of the road inside the circle, patch by patch from the rear to the front.
 
 use crate::road::{Circle, Moments, Road, Segment};
 
@@ -22,9 +22,9 @@ pub(super) struct Line {
     end: f64,
     /// Place on the line of the point nearest to the centre.
     foot: f64,
-    /// How far the centre is above the line; negative below it.
+    /// Height of the centre above the line; negative below it.
     pub distance: f64,
-    /// Negative for a line clear of the circle.
+    /// Negative for a line outside the circle.
     half_chord_squared: f64,
 }
 
@@ -35,10 +35,10 @@ pub(super) struct Clip {
     pub to: f64,
 }
 
-/// A patch may start here: the piece of road, and the point on it.
+/// Possible start of a patch: the piece of road, and the point on it.
 type Place = (usize, [f64; 2]);
 
-/// The pieces of road that can reach into the circle, first and last; none where even the highest ground cannot.
+/// First and last piece of road that can reach into the circle; `None` if even the highest ground cannot.
 #[inline]
 pub(super) fn candidates(road: &Road, circle: &Circle) -> Option<(usize, usize)> {
     let clearance = (circle.centre[1] - road.bounds().highest).max(0.0);
@@ -62,7 +62,7 @@ pub(super) fn patches(road: &Road, circle: &Circle, (first, last): (usize, usize
         }
         let line = Line::new(road.segment(k), circle);
         let clip = line.clip();
-        // Rounding may let neighbours disagree on whether their common vertex is inside: the patch ends there.
+        // By rounding, neighbours may disagree on whether their common vertex is inside; the patch ends there.
         let goes_on = clip.is_some_and(|clip| clip.from == line.start);
         if let Some(entry) = open.filter(|_| !goes_on) {
             each(Patch::between(road, circle, entry, (k, line.at(line.start))));
@@ -124,7 +124,7 @@ impl Line {
         }
     }
 
-    /// The part inside the circle, where there is one.
+    /// The part inside the circle; `None` without one.
     #[inline]
     pub fn clip(&self) -> Option<Clip> {
         let inside = |place: f64| (place - self.foot) * (place - self.foot) < self.half_chord_squared;

@@ -54,7 +54,7 @@ struct Radii {
 }
 
 impl Radii {
-    /// Scans the ground from below the centre forward, then from there backward: near ground hides ground farther away.
+    /// Scans the ground from below the centre forward, then backward: near ground hides ground farther away.
     fn look(&mut self, road: &Road, circle: &Circle) {
         let Some((first, last)) = candidates(road, circle) else {
             return;
@@ -74,7 +74,7 @@ impl Radii {
         }
     }
 
-    /// Adds what can be seen of a piece of ground, and says between which angles that is.
+    /// Adds the visible part of a piece of ground, and returns its angles.
     fn add(
         &mut self,
         road: &Road,
@@ -107,7 +107,7 @@ impl Radii {
     }
 }
 
-/// The half angle of contact on a flat road at which the springs push with `size`: `2 (sin α - α cos α)`.
+/// Half angle of contact on a flat road at which the springs push with `size`: `2 (sin α - α cos α)`.
 fn half_angle(size: f64) -> f64 {
     const STEPS: usize = 50;
     let mut angle = (1.5 * size).cbrt().min(std::f64::consts::PI);

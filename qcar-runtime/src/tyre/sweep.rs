@@ -1,4 +1,4 @@
-//! What a moving circle sweeps: the part of an arc that advances into the ground, and the part that retreats.
+//! The area swept by a moving circle: the part of an arc that advances into the ground, and the part that retreats.
 //!
 //! The two meet at the turning point, where the circle moves along itself. At an angle θ ahead of it the circle
 //! advances with `v·n = w sin θ`, so in the frame of the turning point all integrals are those of sines and cosines.

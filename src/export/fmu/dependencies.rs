@@ -1,5 +1,5 @@
-//! Which inputs and states a derivative, an output or a kink depends on, from the programs: what is zero in a Jacobian may
-//! depend still, by a sign.
+//! Inputs and states on which a derivative, an output or a kink depends, from the programs. A result may depend on a
+//! variable through its sign even if the Jacobian is zero.
 
 use qcar_dsl::c::motion_kinks;
 use qcar_dsl::derive::vectors::Vectors;
@@ -9,7 +9,7 @@ use qcar_dsl::program::{Op, Program};
 use super::variables::Variables;
 use crate::export::Subject;
 
-/// For each result the value references of what it depends on, in ascending order.
+/// For each result, the value references of its inputs and states, in ascending order.
 pub struct Dependencies {
     pub derivatives: Vec<Vec<usize>>,
     pub outputs: Vec<Vec<usize>>,
@@ -17,7 +17,8 @@ pub struct Dependencies {
 }
 
 impl Dependencies {
-    /// Those of a model. Where its tyre rolls, they are said of everything: the contact couples both directions.
+    /// The dependencies of a model. With a rolling tyre every result depends on all: the contact couples both
+    /// directions.
     pub fn of(subject: Subject, variables: &Variables) -> Self {
         let (vectors, programs) = (&subject.compiled.vectors, &subject.compiled.programs);
         let all = |count: usize| vec![variables.moving().collect(); count];

@@ -12,7 +12,7 @@ use super::TOLERANCE;
 use super::variables::{Role, Variable, Variables};
 use super::xml::{around, element};
 
-/// What is said of a unit in every version.
+/// Attributes of a unit in every version.
 const TOOL: &str = concat!("qcar ", env!("CARGO_PKG_VERSION"));
 
 /// The whole file.
@@ -35,7 +35,7 @@ fn between(variables: &Variables) -> [String; 3] {
     ]
 }
 
-/// Each unit once, with whole powers of kg, m and s where it has them.
+/// Each unit once, as whole powers of kg, m and s if possible.
 fn units(variables: &Variables) -> Vec<String> {
     let units: BTreeMap<&str, Unit> = variables
         .all
@@ -75,7 +75,7 @@ fn identity(reference: usize, own: &Variable) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// Unit, start, nominal value and, counted from `first`, the state that a derivative is of.
+/// Unit, start, nominal value and, for a derivative, the number of its state, counted from `first`.
 fn quantity(own: &Variable, variables: &Variables, first: usize) -> Vec<(&'static str, String)> {
     let text = |number: Option<f64>| number.map_or(String::new(), |number| format!("{number:?}"));
     let state = match own.role {
@@ -90,11 +90,11 @@ fn quantity(own: &Variable, variables: &Variables, first: usize) -> Vec<(&'stati
     ]
 }
 
-/// An element for each unknown: its number, and the numbers of what it depends on, all counted from `first`.
+/// An element for each unknown: its number, and the numbers of its dependencies, all counted from `first`.
 fn depending(name: &str, key: &str, unknown: usize, first: usize, dependencies: &[Vec<usize>]) -> Vec<String> {
     let line = |(place, on): (usize, &Vec<usize>)| {
         let on: Vec<String> = on.iter().map(|reference| (reference + first).to_string()).collect();
-        // An empty list states that there is no dependency; without a list it is unknown.
+        // An empty list means no dependency; a missing list means that it is unknown.
         format!(
             "<{name} {key}=\"{}\" dependencies=\"{}\"/>",
             unknown + place + first,

@@ -1,4 +1,4 @@
-//! The library of an FMU for this machine, compiled by the C compiler that is found.
+//! The library of an FMU for this machine, compiled with the C compiler of the system.
 
 use std::env::consts::{ARCH, OS};
 use std::path::Path;
@@ -8,22 +8,22 @@ use std::{env, fs, io};
 use super::Version;
 use crate::export::File;
 
-/// What became of the library.
+/// Result of compiling the library.
 pub enum Library {
-    /// It is in the unit.
+    /// The library is in the unit.
     Compiled {
-        /// Its path in the unit.
+        /// Path in the unit.
         place: String,
-        /// What the compiler is called.
+        /// Name of the compiler.
         compiler: String,
         /// The library.
         bytes: Vec<u8>,
     },
-    /// The unit has sources alone, and why.
+    /// The unit has sources only, with the reason.
     Absent(String),
 }
 
-/// Folder and extension of this machine's libraries.
+/// Folder and extension of libraries on this machine.
 fn platform(version: Version) -> Option<(String, &'static str)> {
     let (old, new, extension) = match OS {
         "linux" => ("linux", "linux", "so"),
@@ -41,7 +41,7 @@ fn platform(version: Version) -> Option<(String, &'static str)> {
 /// Compiles the sources of a unit.
 ///
 /// # Errors
-/// What the compiler says, where it is there and fails, and what the system says of its files.
+/// Fails with the message of the compiler or the error of the system.
 pub fn compile(model: &str, sources: &[File], compiled: &[String], version: Version) -> Result<Library, String> {
     let Some((folder, extension)) = platform(version) else {
         let why = format!("this version of FMI has no name for libraries of {OS} on {ARCH}");
@@ -85,7 +85,7 @@ fn build(
     }
 }
 
-/// As fast as the bits of the evaluator allow.
+/// Fastest options that keep the bits of the evaluator.
 const FLAGS: [&str; 6] = [
     "-std=c99",
     "-O2",
@@ -107,7 +107,7 @@ fn compiler() -> Option<String> {
     candidates.into_iter().find(answers)
 }
 
-/// A folder that is gone when it is left.
+/// A temporary folder, removed when it is dropped.
 struct Folder(std::path::PathBuf);
 
 impl Folder {
@@ -119,7 +119,7 @@ impl Folder {
 
 impl Drop for Folder {
     fn drop(&mut self) {
-        // What stays of it is a folder of temporary files.
+        // A folder that cannot be removed stays among the temporary files.
         let _ = fs::remove_dir_all(&self.0);
     }
 }

@@ -1,14 +1,14 @@
-//! The tyre of a unit that rolls over a profile, as the sources read it.
+//! The rolling tyre of a unit as C data.
 
 use qcar_dsl::about::{About, InputKind};
 use qcar_dsl::model::Quantity;
 use qcar_dsl::units::Unit;
 
-/// What a model rolls on, and where.
+/// Tyre, profile and start of a rolling model.
 pub struct OnTyre {
-    /// Points of the profile, m; it goes on level beyond both ends.
+    /// Points of the profile, m; it is level beyond both ends.
     pub road: Vec<[f64; 2]>,
-    /// Where the centre of the wheel is above at time 0, m.
+    /// Position of the wheel centre at time 0, m.
     pub start: f64,
     /// Unloaded radius, m.
     pub radius: f64,
@@ -16,9 +16,9 @@ pub struct OnTyre {
     pub deflection: f64,
     /// Static load, N.
     pub load: f64,
-    /// m/s.
+    /// Speed, m/s.
     pub speed: f64,
-    /// The state in which the model stands before the road.
+    /// Equilibrium of the model before the road.
     pub rest: Vec<f64>,
 }
 
@@ -28,14 +28,14 @@ pub struct Fact {
     pub doc: &'static str,
     pub unit: (&'static str, Unit),
     pub value: f64,
-    /// What the sources call it.
+    /// Name in the sources.
     access: &'static str,
 }
 
-/// How many constants `rolling.c` has of its own.
+/// Number of constants that `rolling.c` defines itself.
 const CONSTANTS: usize = 7;
 
-/// Signals of the contact, behind the outputs of the model.
+/// Signals of the contact, after the outputs of the model.
 pub const OUTPUTS: [(&str, &str); 2] = [
     ("force_tire_z", "Force of the road on the wheel along z"),
     ("force_tire_x", "Force of the road on the wheel along x"),
@@ -76,13 +76,13 @@ impl OnTyre {
         ]
     }
 
-    /// Those that are no parameters of the model.
+    /// Quantities that are no parameters of the model.
     pub fn own_facts(&self, about: &About) -> Vec<Fact> {
         let is_own = |fact: &Fact| place(about, fact.name).is_none();
         self.facts().into_iter().filter(is_own).collect()
     }
 
-    /// What `rolling.c` reads of the model beside its sizes.
+    /// Definitions for `rolling.c` besides the sizes of the model.
     pub fn definitions(&self, about: &About) -> String {
         let own = self.own_facts(about);
         let access = |fact: &Fact| {
@@ -103,7 +103,7 @@ impl OnTyre {
         )
     }
 
-    /// The sizes of what the contact adds to a model, by their names.
+    /// Numbers of signals that the contact adds to a model, by name.
     pub fn added(&self, about: &About) -> [(&'static str, usize); 3] {
         [
             ("PARAMETERS", self.own_facts(about).len()),
@@ -133,7 +133,7 @@ fn numbers(values: impl Iterator<Item = f64>) -> String {
     values.map(|value| format!("{value:?}")).collect::<Vec<_>>().join(", ")
 }
 
-/// Where the states of the wheel are.
+/// Positions of the states of the wheel.
 fn wheel(about: &About) -> String {
     let contact = about.contact.as_ref().expect("the model rolls");
     let z = &contact.axes[0];
@@ -151,7 +151,7 @@ fn wheel(about: &About) -> String {
     )
 }
 
-/// Where the inputs of the road are.
+/// Positions of the inputs of the road.
 fn road(about: &About) -> String {
     let of = |wanted: Quantity| {
         let is_of = |kind: InputKind| match kind {

@@ -13,18 +13,18 @@ use qcar_dsl::units::Unit;
 use super::tyre::{self, Fact, OnTyre};
 use crate::export::Subject;
 
-/// What a variable is to its unit.
+/// Kind of a variable.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Role {
     Parameter,
-    /// A parameter that stays from the start on.
+    /// A parameter that is fixed after initialisation.
     Fixed,
     Input,
     State,
-    /// Of the state of this place.
+    /// Derivative of the state at this position.
     Derivative(usize),
     Output,
-    /// A value whose sign tells on which side of its kink a law is.
+    /// An indicator whose sign gives the side of a law's kink.
     Kink,
     Time,
 }
@@ -34,34 +34,34 @@ pub struct Variable {
     pub name: String,
     pub role: Role,
     pub description: String,
-    /// What its unit is called, and what it is.
+    /// Name and description of its unit.
     pub unit: (String, Unit),
-    /// Where it has one.
+    /// Start value, if it has one.
     pub start: Option<f64>,
 }
 
 impl Variable {
-    /// How large a state is in a rough ride: what the tolerance is relative to where it is small.
+    /// Typical size of a state on a rough road, to which the tolerance of a small state is relative.
     pub fn nominal(&self) -> Option<f64> {
         (self.role == Role::State).then(|| nominal(self.unit.1))
     }
 }
 
-/// All variables; the place of one is its value reference.
+/// All variables; the position of a variable is its value reference.
 pub struct Variables {
     pub all: Vec<Variable>,
     parameters: usize,
     inputs: usize,
     states: usize,
     outputs: usize,
-    /// How many kinks there are.
+    /// Number of kinks.
     pub kinks: usize,
-    /// Whether the model rolls on its tyre.
+    /// True if the model rolls on its tyre.
     pub rolls: bool,
 }
 
 impl Variables {
-    /// Those of a model.
+    /// The variables of a model.
     pub fn of(subject: Subject, tyre: Option<&OnTyre>) -> Self {
         let (compiled, about) = (subject.compiled, &subject.compiled.about);
         let kinks = motion_kinks(subject.compiled).outputs.len();
@@ -126,7 +126,7 @@ impl Variables {
     }
 }
 
-/// A centimetre of travel, a decimetre a second, a hundred newtons.
+/// Typical sizes: a centimetre, a decimetre per second, a hundred newtons.
 fn nominal(unit: Unit) -> f64 {
     let speed = Unit::METER.per(Unit::SECOND);
     match unit {
@@ -169,7 +169,7 @@ fn inputs(compiled: &Compiled, rolls: bool) -> impl Iterator<Item = Variable> {
     })
 }
 
-/// What an input is, for who connects it.
+/// Description of an input for the user of the unit.
 fn meaning(about: &About, kind: InputKind, rolls: bool) -> String {
     let excitation = |place: u16| &about.excitations[usize::from(place)];
     match kind {
@@ -227,7 +227,7 @@ fn outputs(compiled: &Compiled) -> impl Iterator<Item = Variable> {
     })
 }
 
-/// Of the contact of a tyre that rolls.
+/// Signals of the contact of a rolling tyre.
 fn force((name, doc): (&str, &str)) -> Variable {
     Variable {
         name: name.into(),
@@ -258,7 +258,7 @@ fn time() -> Variable {
     }
 }
 
-/// A name stands once in a unit: a later one of the same gets a `_` after it.
+/// Makes names unique: a repeated name gets a `_`.
 fn make_distinct(variables: &mut [Variable]) {
     let mut used = HashSet::new();
     for variable in variables {

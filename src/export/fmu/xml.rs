@@ -1,11 +1,11 @@
 //! Elements of XML as text.
 
-/// An element without content; attributes without a value are left out.
+/// An element without content; attributes that are `None` are left out.
 pub fn element(name: &str, attributes: &[(&str, String)]) -> String {
     format!("<{name}{}/>", self::attributes(attributes))
 }
 
-/// An element with content on lines of its own, each a step further in.
+/// An element with its content on separate, indented lines.
 pub fn around(name: &str, attributes: &[(&str, String)], content: &[String]) -> String {
     if content.is_empty() {
         return element(name, attributes);
@@ -25,7 +25,7 @@ fn attributes(attributes: &[(&str, String)]) -> String {
         .collect()
 }
 
-/// What may stand in an attribute; characters that XML cannot hold become spaces.
+/// Text that is valid in an attribute; characters that XML cannot hold become spaces.
 fn escaped(text: &str) -> String {
     let letters = text.chars().map(|letter| match letter {
         '&' => "&amp;".into(),

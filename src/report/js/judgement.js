@@ -2,7 +2,7 @@
 
 // Beyond both, a sensor has more left than noise and calibration explain: percent of its signal, as in discovery's own
 // verdict, and standard deviations.
-const MUCH = { percent: 5, deviations: 2 };
+const LARGE = { percent: 5, deviations: 2 };
 
 // A rival whose evidence is lower by less than this has at least a twentieth of the probability of the answer.
 const APART = Math.log(20);
@@ -28,7 +28,7 @@ function leftOver({ left, by_channel: deviations, effects }) {
 }
 
 function muchLeft(discover) {
-  return leftOver(discover).filter((own) => own.percent > MUCH.percent && own.deviations > MUCH.deviations);
+  return leftOver(discover).filter((own) => own.percent > LARGE.percent && own.deviations > LARGE.deviations);
 }
 
 function lead({ summary, discover }) {
@@ -73,7 +73,7 @@ function consequence(discover, { verdict: kind }, likely) {
 
 // The fitted runs may call for no effect while others are predicted badly.
 function unneeded(gap) {
-  return gap.before > MUCH.deviations
+  return gap.before > LARGE.deviations
     ? 'The fitted runs show no effect of the catalogue, but the model does not predict these runs.'
     : 'No effect of the catalogue is needed.';
 }

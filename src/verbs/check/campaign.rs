@@ -1,4 +1,4 @@
-//! The runs of a campaign, the flaws of their samples, and units that these contradict.
+//! The runs of a campaign, the flaws of their samples, and units that the samples contradict.
 
 use std::path::Path;
 
@@ -12,43 +12,43 @@ use crate::table::{Table, number};
 /// Significant digits.
 const DIGITS: usize = 6;
 
-/// Whether every fit can rest on the samples, and what to say of the campaign.
+/// True if every fit can use the samples, and the text on the campaign.
 pub(super) fn verdict(folder: &Path) -> Result<(bool, String), Failure> {
     let campaign = Campaign::open(folder)?;
     let findings = campaign.findings()?;
-    let mut said = campaign.notices.clone();
+    let mut sentences = campaign.notices.clone();
     for finding in &findings {
         let sentence = finding.to_string();
-        // Those of files of rigs are among the notices already.
-        if !said.contains(&sentence) {
-            said.push(sentence);
+        // Flaws of measured files are already among the notices.
+        if !sentences.contains(&sentence) {
+            sentences.push(sentence);
         }
     }
-    said.extend(doubts(&campaign)?);
+    sentences.extend(doubts(&campaign)?);
     let well = !findings.iter().any(|finding| finding.fatal);
-    let verdict = match (well, said.is_empty()) {
+    let verdict = match (well, sentences.is_empty()) {
         (true, true) => "ok".to_string(),
         (true, false) => "ok, with warnings".into(),
         (false, _) => "not fit for a fit".into(),
     };
-    let said: String = said.iter().map(|sentence| format!("{sentence}\n")).collect();
+    let text: String = sentences.iter().map(|sentence| format!("{sentence}\n")).collect();
     Ok((
         well,
-        format!("{}: {verdict}\n{}{said}", folder.display(), runs(&campaign)?),
+        format!("{}: {verdict}\n{}{text}", folder.display(), runs(&campaign)?),
     ))
 }
 
-/// Sensors whose samples contradict the unit that they are said to have.
+/// Sensors whose samples contradict their unit.
 fn doubts(campaign: &Campaign) -> Result<Vec<String>, InputError> {
-    let mut said = Vec::new();
+    let mut sentences = Vec::new();
     for run in campaign.runs.iter().filter(|run| run.test.sample_rate().is_some()) {
         let history = campaign.history(run)?;
-        said.extend(history.signals.iter().filter_map(|(channel, samples)| {
+        sentences.extend(history.signals.iter().filter_map(|(channel, samples)| {
             let what = doubt(channel.quantity.unit(), does(samples))?;
             Some(format!("{}, `{}`: {what}", run.name, channel.name))
         }));
     }
-    Ok(said)
+    Ok(sentences)
 }
 
 fn does(samples: &[f64]) -> Option<Does> {

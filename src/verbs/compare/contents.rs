@@ -1,4 +1,4 @@
-//! A comparison as JSON: what programs read, and with it the curves that the page draws.
+//! A comparison as JSON: the results, and the curves for the report.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ use crate::json::Ordered;
 use crate::verbs::diff::{Change, parts};
 use crate::verbs::study::axle::Axle;
 
-/// What the page is made of.
+/// Data of the report.
 #[derive(Serialize)]
 pub(super) struct Contents<'a> {
     #[serde(flatten)]
@@ -27,7 +27,7 @@ pub(super) struct Contents<'a> {
     version: &'static str,
 }
 
-/// What programs read.
+/// The results in JSON.
 #[derive(Serialize)]
 pub(super) struct Result<'a> {
     pub kind: &'static str,
@@ -45,10 +45,10 @@ pub(super) struct Result<'a> {
 /// A side.
 #[derive(Serialize)]
 pub(super) struct Named<'a> {
-    /// As the user has named it.
+    /// Name as the user gave it.
     pub name: &'a str,
     pub model: &'a str,
-    /// The model's sentence.
+    /// Description of the model.
     doc: &'a str,
     campaign: Option<&'a str>,
 }
@@ -56,12 +56,12 @@ pub(super) struct Named<'a> {
 /// Peaks and after-shakes.
 #[derive(Serialize)]
 pub(super) struct Cleat<'a> {
-    /// Which runs these are.
+    /// Kind of these runs.
     conditions: &'static str,
     runs: Vec<Run<'a>>,
     /// Changes over all runs, by `mass_axis`.
     pub summary: BTreeMap<String, Changes>,
-    /// The same of what two campaigns measured.
+    /// Changes between the measurements of two campaigns.
     pub measured: Option<BTreeMap<String, Changes>>,
 }
 
@@ -70,22 +70,22 @@ pub(super) struct Cleat<'a> {
 struct Run<'a> {
     run: &'a str,
     role: Option<&'static str>,
-    /// m/s.
+    /// Speed, m/s.
     speed: f64,
-    /// m.
+    /// Height of the cleat, m.
     height: f64,
     #[serde(flatten)]
     metrics: &'a Metrics,
 }
 
-/// Over all runs.
+/// Changes over all runs.
 #[derive(Serialize)]
 pub(super) struct Changes {
     pub peak: Option<Spread>,
     pub after_shake: Option<Spread>,
 }
 
-/// Of relative changes.
+/// Statistics of relative changes.
 #[derive(Clone, Copy, Serialize)]
 pub(super) struct Spread {
     pub least: f64,
@@ -110,7 +110,7 @@ struct Traces<'a> {
 }
 
 impl<'a> Contents<'a> {
-    /// Those of a comparison.
+    /// The contents of a comparison.
     pub fn of(comparison: &'a Comparison) -> Self {
         let [a, b] = &comparison.sides;
         let axle = |side: &Side| Axle::of(&side.compiled, side.values.as_slice());
@@ -178,7 +178,7 @@ fn traces(of: &Passage) -> Traces<'_> {
     }
 }
 
-/// Changes of every mass and axis that has any.
+/// Changes of every mass and axis that was compared.
 fn summary(of: &[Passage], change: fn(&Metric) -> Option<f64>) -> BTreeMap<String, Changes> {
     let mut groups: BTreeMap<String, Vec<&Metrics>> = BTreeMap::new();
     for metrics in of.iter().flat_map(|passage| &passage.compared.metrics) {

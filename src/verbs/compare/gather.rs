@@ -1,4 +1,4 @@
-//! Everything in which two sides differ.
+//! All differences between two sides.
 
 use qcar_dsl::difference::{Difference, difference};
 use qcar_runtime::campaign::{Campaign, Test};
@@ -16,28 +16,28 @@ use crate::failure::Failure;
 use crate::parameters::out_of_range;
 use crate::verbs::simulate::guessed;
 
-/// A and B, and in what they differ.
+/// A and B, and their differences.
 pub(super) struct Comparison {
-    /// `parameters`, `models` or `campaigns`.
+    /// Kind: `parameters`, `models` or `campaigns`.
     pub kind: &'static str,
     pub sides: [Side; 2],
     pub parameters: Vec<Parameter>,
     pub modes: Vec<Pair>,
-    /// In what the models differ.
+    /// Differences of the models.
     pub difference: Difference,
     pub ratios: Vec<Ratio>,
-    /// What the cleat runs are.
+    /// Kind of the cleat runs.
     pub conditions: &'static str,
     pub passages: Vec<Passage>,
     pub gradients: Vec<Gradient>,
-    /// What could not be compared, and why.
+    /// Parts that could not be compared, with reasons.
     pub notices: Vec<String>,
 }
 
-/// Compares.
+/// Compares two sides.
 ///
 /// # Errors
-/// What A, B or the campaign beside them has wrong.
+/// Fails if A, B or the common campaign is invalid.
 pub(super) fn gather(subject: &Subject, arguments: &Arguments) -> Result<Comparison, Failure> {
     let sides = sides(subject, arguments)?;
     let beside = arguments.campaign.as_ref().map(Campaign::open).transpose()?;
@@ -67,7 +67,7 @@ pub(super) fn gather(subject: &Subject, arguments: &Arguments) -> Result<Compari
     })
 }
 
-/// What the model of a side takes for implausible.
+/// Warnings of the model of a side.
 fn odd_values(side: &Side) -> Vec<String> {
     let sentences = out_of_range(side.model.about(), side.values.as_slice()).into_iter();
     sentences
@@ -75,7 +75,7 @@ fn odd_values(side: &Side) -> Vec<String> {
         .collect()
 }
 
-/// What the fit to a campaign has left at its start value tells nothing of it.
+/// Notices on parameters that the fit of a campaign left at their start values: they do not describe the campaign.
 fn start_values(side: &Side) -> Option<String> {
     let campaign = &side.measured.as_ref()?.campaign;
     let names = guessed(campaign, &side.model, &side.values);
@@ -125,10 +125,10 @@ fn all_ratios(
     Ok(ratios)
 }
 
-/// Facts that a rolling tyre needs.
+/// Vehicle data that a rolling tyre needs.
 const TYRE: [&str; 3] = ["r_tire", "static_tire_def", "static_tire_load"];
 
-/// The wheel of a side as its own campaign states it, or the common one of both.
+/// Vehicle data of the campaign of a side, or the common data of both.
 fn roles(side: &Side, beside: Option<&Campaign>) -> Result<Roles, RoleError> {
     let own = side.measured.as_ref().map(|measured| &measured.campaign);
     let named = own.or(beside).map(|campaign| campaign.roles.clone());

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::sides::Measured;
 use crate::verbs::kc;
 
-/// A gradient of both campaigns; of one where the other has no such curve.
+/// A gradient of both campaigns, or of one of them if the other has no such curve.
 #[derive(Serialize)]
 pub(super) struct Gradient {
     pub test: &'static str,
@@ -13,20 +13,20 @@ pub(super) struct Gradient {
     pub(super) unit: &'static str,
     pub a: Option<Value>,
     pub b: Option<Value>,
-    /// B less A, over A; `None` where A is hardly more than its uncertainty.
+    /// Relative difference (B - A)/A; `None` if A is hardly larger than its uncertainty.
     pub relative: Option<f64>,
     /// The difference over the root of the sum of both squared uncertainties.
     pub standard_errors: Option<f64>,
 }
 
-/// One standard deviation beside a value.
+/// A value with its standard deviation.
 #[derive(Clone, Copy, Serialize)]
 pub(super) struct Value {
     pub value: f64,
     uncertainty: f64,
 }
 
-/// Those of A, and then what B has beside them.
+/// The gradients of A, then those of B alone.
 pub(super) fn gradients([a, b]: [&Measured; 2]) -> Vec<Gradient> {
     let find = |among: &[kc::Gradient], own: &kc::Gradient| {
         let mut all = among.iter();
@@ -44,7 +44,7 @@ pub(super) fn gradients([a, b]: [&Measured; 2]) -> Vec<Gradient> {
 }
 
 impl Value {
-    /// More than what scatter alone would give.
+    /// True if the difference exceeds the scatter.
     fn is_known(&self) -> bool {
         self.value.abs() > 2.0 * self.uncertainty
     }

@@ -6,14 +6,14 @@ use serde::Serialize;
 use super::sides::Side;
 use crate::verbs::study::shapes::{Shape, shape};
 
-/// A vibration of both sides; of one where the other has none like it.
+/// A mode of both sides, or of one if the other has no similar mode.
 #[derive(Serialize)]
 pub(super) struct Pair {
     pub a: Option<Shape>,
     pub b: Option<Shape>,
 }
 
-/// Those of A by frequency, and then what B has beside them.
+/// The modes of A by frequency, then those of B alone.
 pub(super) fn pairs([a, b]: &[Side; 2]) -> Vec<Pair> {
     let (first, second) = (of(a), of(b));
     let same = modes::pairs(&first, &second);

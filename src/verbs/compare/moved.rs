@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::sides::Side;
 
-/// A parameter of either model; what only one of them has is `None` of the other.
+/// A parameter of either model; `None` for the side without it.
 #[derive(Serialize)]
 pub(super) struct Parameter {
     pub name: String,
@@ -12,24 +12,24 @@ pub(super) struct Parameter {
     doc: String,
     pub a: Option<f64>,
     pub b: Option<f64>,
-    /// B less A, in the unit.
+    /// Difference B - A, in the unit.
     pub difference: Option<f64>,
-    /// Over A.
+    /// Difference relative to A.
     pub relative: Option<f64>,
     pub stderr_a: Option<f64>,
     pub stderr_b: Option<f64>,
-    /// The difference over the root of the sum of both squared standard errors, where both are known.
+    /// Difference over the root of the sum of both squared standard errors; `None` if an error is unknown.
     pub standard_errors: Option<f64>,
-    /// Both have it, each with a value of its own.
+    /// True if both sides have a value that is not tied.
     pub moved: bool,
-    /// The parameter that it takes its value from on both sides.
+    /// The parameter that it is tied to on both sides.
     pub tied_to: Option<String>,
 }
 
-/// Relative differences below this are the rounding of a file.
+/// Relative differences below this come from rounding in files.
 const SAME: f64 = 1e-9;
 
-/// All parameters of both models, in the order of A and then of B.
+/// All parameters of both models: those of A, then those of B alone.
 pub(super) fn parameters([a, b]: &[Side; 2]) -> Vec<Parameter> {
     let of = |side: &Side| side.model.about().parameters.to_vec();
     let (first, second) = (of(a), of(b));
@@ -76,14 +76,14 @@ fn value(of: &Side, name: &str) -> Option<f64> {
     Some(of.values.as_slice()[place(of, name)?])
 }
 
-/// The parameter whose value this one has; itself, unless it is tied.
+/// The parameter that determines the value of this one; itself if it is not tied.
 fn leader(of: &Side, name: &str) -> Option<String> {
     let leader = of.values.leader(place(of, name)?);
     Some(of.model.about().parameters[leader].name.to_string())
 }
 
 impl Parameter {
-    /// Moved, or of one side alone.
+    /// True if it differs or belongs to one side alone.
     pub(super) fn differs(&self) -> bool {
         self.moved || self.a.is_none() || self.b.is_none()
     }

@@ -1,9 +1,9 @@
-//! Both sides over the same cleats, and what was measured there: peaks, after-shakes and traces.
+//! Cleat runs of both sides and the measurements: peaks, after-shakes and traces.
 
 use qcar_runtime::campaign::{Campaign, Quantity, Role};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::model::{self, SignalKind};
-use qcar_runtime::progress::Told;
+use qcar_runtime::progress::OnProgress;
 use qcar_runtime::roles::Roles;
 use qcar_runtime::simulate::{Car, Cleat, Drive, Ride, Settings, Standard, Variant, rides, tyre_of};
 
@@ -11,24 +11,24 @@ use super::records::{Compared, Key, Record, compared};
 use super::sides::Side;
 use crate::progress::while_counting;
 
-/// A run over a cleat that both sides are driven over.
+/// A cleat run of both sides.
 pub(super) struct Passage {
-    /// The file of the run, or what is driven.
+    /// File of the run, or description of the ride.
     pub name: String,
-    /// m/s.
+    /// Speed, m/s.
     pub speed: f64,
-    /// Of the cleat, m.
+    /// Height of the cleat, m.
     pub height: f64,
-    /// `fit` or `held_out`, of a campaign's run.
+    /// Role of a run of a campaign: `fit` or `held_out`.
     pub role: Option<&'static str>,
     /// Peaks, after-shakes and traces.
     pub compared: Compared,
 }
 
-/// A run before it is driven.
+/// A cleat run before its simulation.
 enum Run {
     Standard(Standard),
-    /// Of the campaign, or of A; and of B, where that is a campaign too.
+    /// Measured run of the campaign or of A, and of B if it is a campaign.
     Measured(Box<Cleat>, Option<Box<Cleat>>),
 }
 
@@ -62,10 +62,10 @@ impl Run {
     }
 }
 
-/// The thesis's twelve runs.
+/// The twelve runs of the thesis.
 ///
 /// # Errors
-/// As [`driven`].
+/// Fails as [`driven`] does.
 pub(super) fn standard(sides: &[Side; 2], roles: &[Roles; 2]) -> Result<Vec<Passage>, InputError> {
     let runs = Standard::all().expect("the standard cleats are roads");
     driven(sides, roles, runs.into_iter().map(Run::Standard).collect())
@@ -74,7 +74,7 @@ pub(super) fn standard(sides: &[Side; 2], roles: &[Roles; 2]) -> Result<Vec<Pass
 /// The runs of a campaign.
 ///
 /// # Errors
-/// A run or road that cannot be read, and as [`driven`].
+/// Fails if a run or road cannot be read, and as [`driven`] does.
 pub(super) fn of_campaign(
     sides: &[Side; 2],
     roles: &[Roles; 2],
@@ -86,10 +86,10 @@ pub(super) fn of_campaign(
     driven(sides, roles, runs.collect())
 }
 
-/// The runs that two campaigns have in common: the same speed over a cleat of the same height.
+/// The common runs of two campaigns: equal speed and height of the cleat.
 ///
 /// # Errors
-/// A run or road that cannot be read, and as [`driven`].
+/// Fails if a run or road cannot be read, and as [`driven`] does.
 pub(super) fn of_campaigns(
     sides: &[Side; 2],
     roles: &[Roles; 2],
@@ -120,10 +120,10 @@ fn height(of: &Cleat) -> f64 {
     heights.fold(f64::NEG_INFINITY, f64::max) - of.road.vertices()[0][1]
 }
 
-/// Drives both sides and holds them against each other.
+/// Simulates and compares both sides.
 ///
 /// # Errors
-/// A vehicle without a tyre, and rides that cannot be simulated or compared.
+/// Fails if the vehicle has no tyre, or if a ride cannot be simulated or compared.
 fn driven(sides: &[Side; 2], roles: &[Roles; 2], runs: Vec<Run>) -> Result<Vec<Passage>, InputError> {
     let [a, b] = [rides_of(&sides[0], &runs)?, rides_of(&sides[1], &runs)?];
     let passages = runs.iter().zip(a.iter().zip(&b));
@@ -143,7 +143,7 @@ fn rides_of(side: &Side, runs: &[Run]) -> Result<Vec<Ride>, InputError> {
         variant: Variant::Complete,
     };
     let drives: Vec<Drive> = runs.iter().map(Run::drive).collect();
-    let simulate = |told: Told<'_>| rides(&car, &drives, &Settings::default(), told);
+    let simulate = |on_progress: OnProgress<'_>| rides(&car, &drives, &Settings::default(), on_progress);
     let all = while_counting(format!("{}: ride", side.name), simulate);
     let checked = runs
         .iter()
@@ -178,7 +178,7 @@ fn passage(sides: &[Side; 2], feeling: &[Key], run: &Run, (a, b): (&Ride, &Ride)
     })
 }
 
-/// The masses of both sides in the order in which they feel a cleat.
+/// The masses of both sides, the wheel first.
 fn feeling(roles: &[Roles; 2]) -> Vec<Key> {
     let keys = |roles: &Roles| -> Vec<Key> {
         let masses = roles.feeling();
@@ -187,7 +187,7 @@ fn feeling(roles: &[Roles; 2]) -> Vec<Key> {
     roles.iter().flat_map(keys).collect()
 }
 
-/// The accelerations of a ride.
+/// Accelerations of a ride.
 fn simulated<'a>(side: &'a Side, ride: &'a Ride) -> Record<'a> {
     let outputs = side.model.about().outputs.iter().zip(&ride.outputs);
     let accelerations =
@@ -199,7 +199,7 @@ fn simulated<'a>(side: &'a Side, ride: &'a Ride) -> Record<'a> {
     keyed.collect()
 }
 
-/// Those of a measured run.
+/// Accelerations of a measured run.
 fn recorded(cleat: &Cleat) -> Record<'_> {
     let accelerations = cleat
         .measured

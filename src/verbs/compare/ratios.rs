@@ -1,4 +1,4 @@
-//! Transmissibilities of both sides, and of what was measured.
+//! Transmissibilities of both sides and of the measurements.
 
 use std::f64::consts::PI;
 
@@ -11,7 +11,7 @@ use qcar_runtime::fit::measure::levels;
 use qcar_runtime::fit::observation::Observation;
 use qcar_runtime::fit::quality::{Quality, quality};
 use qcar_runtime::model::Channel;
-use qcar_runtime::progress::Told;
+use qcar_runtime::progress::OnProgress;
 use qcar_runtime::transmissibility::Options;
 use serde::Serialize;
 
@@ -22,26 +22,26 @@ use crate::verbs::frf;
 use crate::verbs::study::rig::{Polar, band, nearest, unwrapped};
 use crate::verbs::study::swept::{Swept, between, swept_by};
 
-/// A channel of both models, in a run where one was measured.
+/// A channel of both models; if measured, in the run of the measurement.
 #[derive(Serialize)]
 pub(super) struct Ratio {
     pub channel: String,
-    /// The file of the run; of two campaigns, that of A.
+    /// File of the run; of A, if two campaigns are compared.
     pub run: Option<String>,
-    /// `fit` or `held_out`.
+    /// Role: `fit` or `held_out`.
     role: Option<&'static str>,
-    /// Hz.
+    /// Frequencies, Hz.
     pub frequency: Vec<f64>,
-    /// The models.
+    /// Ratios of the models.
     pub a: Polar,
     pub b: Polar,
-    /// B over A.
+    /// Ratio of B to A.
     pub change: Polar,
-    /// One of the campaign, or one of each of two campaigns.
+    /// Measured ratios: one of the common campaign, or one of each campaign.
     pub measured: Vec<Curve>,
-    /// Of two campaigns, what was measured of B over that of A.
+    /// Ratio of the measurement of B to that of A, for two campaigns.
     measured_change: Option<Polar>,
-    /// How well each model meets the measurement.
+    /// Fit of each model to the measurement.
     quality: Vec<Quality>,
 }
 
@@ -49,32 +49,32 @@ pub(super) struct Ratio {
 #[derive(Serialize)]
 pub(super) struct Curve {
     pub value: Polar,
-    /// To either side.
+    /// Uncertainty to either side.
     pub band: Polar,
 }
 
-/// A channel in a few numbers.
+/// Summary of a channel.
 #[derive(Serialize)]
 pub(super) struct Summary<'a> {
     pub channel: &'a str,
     pub run: Option<&'a str>,
     pub role: Option<&'static str>,
-    /// Of the models.
+    /// Difference of the models.
     pub change: Option<Largest>,
-    /// Of what was measured of two campaigns.
+    /// Difference of the measurements of two campaigns.
     pub measured: Option<Largest>,
-    /// How well the magnitude of each model meets the measurement, percent.
+    /// Magnitude fit of each model, percent.
     pub fit: Option<[f64; 2]>,
 }
 
-/// Where B is most above or below A.
+/// Largest difference of B from A.
 #[derive(Serialize)]
 pub(super) struct Largest {
-    /// dB.
+    /// Difference, dB.
     pub magnitude: f64,
-    /// Hz.
+    /// Frequency of the largest difference, Hz.
     pub frequency: f64,
-    /// Root mean square over the lines, dB.
+    /// Root mean square of the difference over the lines, dB.
     pub rms: f64,
 }
 
@@ -106,7 +106,7 @@ impl Ratio {
     }
 }
 
-/// Both sides as they answer to small motions.
+/// Both sides for small motions.
 fn at_rest(sides: &[Side; 2]) -> [Swept<'_>; 2] {
     sides.each_ref().map(|side| Swept::at_rest(&*side.model, &side.values))
 }
@@ -116,13 +116,13 @@ fn swept<'a>(side: &'a Side, campaign: &Campaign) -> Result<Swept<'a>, InputErro
     if side.model.about().linear {
         return Ok(Swept::at_rest(&*side.model, &side.values));
     }
-    while_counting(swept_by(&campaign.name, &*side.model), |told| {
+    while_counting(swept_by(&campaign.name, &*side.model), |on_progress| {
         let evidence = Evidence::from_campaign(campaign, side.model.about())?;
-        Ok(Swept::new(&*side.model, &side.values, &evidence, told))
+        Ok(Swept::new(&*side.model, &side.values, &evidence, on_progress))
     })
 }
 
-/// Channels of the models alone, at these frequencies (Hz): those that both have.
+/// Channels that both models have, without measurements, at these frequencies (Hz).
 pub(super) fn modelled(sides: &[Side; 2], frequency: &[f64]) -> Vec<Ratio> {
     let [a, b] = sides.each_ref().map(|side| side.model.about());
     let models = at_rest(sides);
@@ -137,13 +137,13 @@ pub(super) fn modelled(sides: &[Side; 2], frequency: &[f64]) -> Vec<Ratio> {
     a.channels.iter().filter(is_of_b).filter_map(ratio).collect()
 }
 
-/// Channels that a campaign has measured, beside both models.
+/// Measured channels of a campaign, with both models.
 ///
 /// # Errors
-/// A run that cannot be read.
+/// Fails if a run cannot be read.
 pub(super) fn of_campaign(sides: &[Side; 2], campaign: &Campaign) -> Result<Vec<Ratio>, InputError> {
     let about = sides[0].model.about();
-    let measure = |told: Told<'_>| levels(campaign, about, None, &Options::default(), told);
+    let measure = |on_progress: OnProgress<'_>| levels(campaign, about, None, &Options::default(), on_progress);
     let levels = while_counting(format!("{}: transmissibilities of run", campaign.name), measure)?;
     let models = [swept(&sides[0], campaign)?, swept(&sides[1], campaign)?];
     let [first, second] = sides.each_ref().map(|side| &side.model.about().excitations);
@@ -160,10 +160,10 @@ pub(super) fn of_campaign(sides: &[Side; 2], campaign: &Campaign) -> Result<Vec<
     Ok(ratios)
 }
 
-/// Channels that both campaigns have measured in like runs.
+/// Channels that both campaigns have measured in similar runs.
 ///
 /// # Errors
-/// A run that cannot be read.
+/// Fails if a run cannot be read.
 pub(super) fn of_campaigns(sides: &[Side; 2], [a, b]: [&Measured; 2]) -> Result<Vec<Ratio>, InputError> {
     let models = [swept(&sides[0], &a.campaign)?, swept(&sides[1], &b.campaign)?];
     let mut ratios = Vec::new();
@@ -186,7 +186,7 @@ pub(super) fn of_campaigns(sides: &[Side; 2], [a, b]: [&Measured; 2]) -> Result<
     Ok(ratios)
 }
 
-/// Two runs that were driven alike.
+/// Two runs with equal excitation.
 fn alike(a: &Campaign, first: &Level, b: &Campaign, second: &Level) -> bool {
     let test = |campaign: &Campaign, level: &Level| {
         let run = campaign.runs.iter().find(|run| run.name == level.name);
@@ -199,7 +199,7 @@ fn alike(a: &Campaign, first: &Level, b: &Campaign, second: &Level) -> bool {
     }
 }
 
-/// A channel of a run of A, and of a run of B; each run with its excitation.
+/// A channel of a run of A and of a run of B, each run with its excitation.
 fn in_run(
     models: &[Swept; 2],
     level: &Level,
@@ -253,7 +253,7 @@ fn together(
     }
 }
 
-/// How well a model meets a measurement, at the lines where both are known.
+/// Fit of a model to a measurement, at the lines where both are known.
 fn met(frequency: &[f64], model: &[Complex<f64>], measured: &[Complex<f64>]) -> Quality {
     let known = |line: &usize| model[*line].is_finite() && measured[*line].is_finite();
     let lines: Vec<usize> = (0..frequency.len()).filter(known).collect();
@@ -262,14 +262,14 @@ fn met(frequency: &[f64], model: &[Complex<f64>], measured: &[Complex<f64>]) -> 
     quality(&frequency, &at(model), &at(measured))
 }
 
-/// One ratio over another, its phase within half a turn.
+/// Quotient of two ratios, with its phase within ±180°.
 fn over(above: &[Complex<f64>], below: &[Complex<f64>]) -> Polar {
     let ratio: Vec<_> = above.iter().zip(below).map(|(above, below)| above / below).collect();
     let phase: Vec<f64> = ratio.iter().map(|value| value.arg().clamp(-PI, PI)).collect();
     Polar::new(&ratio, &phase)
 }
 
-/// What was measured, at the lines of another run.
+/// Measured values at the lines of another run.
 fn at(own: &Observation, frequency: &[f64]) -> Vec<Complex<f64>> {
     frequency
         .iter()

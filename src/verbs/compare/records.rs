@@ -1,5 +1,5 @@
-//! Records of one passage compared from the moment at which the wheel reaches the cleat: the peaks and after-shakes of
-//! thesis section 3.6.2, and traces.
+//! Records of one passage, aligned at the time at which the wheel reaches the cleat: peaks and after-shakes of thesis
+//! section 3.6.2, and traces.
 
 use std::collections::BTreeMap;
 
@@ -14,15 +14,15 @@ pub(super) type Key = (String, String);
 /// Accelerations of a passage, m/s².
 pub(super) type Record<'a> = BTreeMap<Key, &'a [f64]>;
 
-/// Shown before the wheel feels the cleat, s.
+/// Time before the impact that is shown, s.
 const RUN_IN: f64 = 0.05;
 
 /// A passage of both sides.
 #[derive(Serialize)]
 pub(super) struct Compared {
-    /// One for each mass and axis that both have.
+    /// One entry for each mass and axis of both sides.
     pub metrics: Vec<Metrics>,
-    /// s after the wheel of A has felt the cleat.
+    /// Time after the impact of the wheel of A, s.
     pub time: Vec<f64>,
     pub traces: Vec<Trace>,
 }
@@ -36,19 +36,19 @@ pub(super) struct Metrics {
     pub after_shake: Metric,
 }
 
-/// A number of both sides, m/s².
+/// A value of both sides, m/s².
 #[derive(Serialize)]
 pub(super) struct Metric {
     pub a: f64,
     pub b: f64,
-    /// B less A, over A.
+    /// Relative difference (B - A)/A.
     pub change: Option<f64>,
-    /// The same of the measurement, or of both.
+    /// Measured value, of the common campaign or of both.
     pub measured: Vec<f64>,
 }
 
 impl Metric {
-    /// That of what was measured of both.
+    /// Relative difference of both measurements.
     pub(super) fn measured_change(&self) -> Option<f64> {
         match self.measured[..] {
             [a, b] => Some((b - a) / a).filter(|change| change.is_finite()),
@@ -57,7 +57,7 @@ impl Metric {
     }
 }
 
-/// Accelerations over the time of the passage, m/s².
+/// Accelerations over time, m/s².
 #[derive(Serialize)]
 pub(super) struct Trace {
     pub mass: String,
@@ -67,11 +67,11 @@ pub(super) struct Trace {
     pub measured: Vec<Vec<f64>>,
 }
 
-/// Compares simulated records of both sides, and measured ones with them; all have one sample rate (Hz). Of a record the
-/// first of `feeling` that it has feels the cleat first: the wheel.
+/// Compares simulated records of both sides, and measured records with them. All have one sample rate (Hz). The first
+/// recorded mass of `feeling`, the wheel, determines the time of the impact.
 ///
 /// # Errors
-/// A wheel that does not feel the cleat, or a record that ends too early.
+/// Fails if the wheel has no impact, or if a record ends too early.
 pub(super) fn compared(
     sides: &[Record; 2],
     measured: &[Record],
@@ -115,7 +115,7 @@ pub(super) fn compared(
     })
 }
 
-/// Where the first of `feeling` that was recorded feels the cleat; `None` without any.
+/// Time of the impact of the first recorded mass of `feeling`; `None` without any.
 fn onset(of: &Record, feeling: &[Key]) -> Result<Option<usize>, CompareError> {
     let first = feeling.iter().find_map(|key| of.get(key));
     first
@@ -144,7 +144,7 @@ fn metrics(key: &Key, [a, b]: &[Record; 2], measured: &[Record], read: (&[Key], 
     })
 }
 
-/// Peak and after-shake of a record, each from where its own wheel feels the cleat; NaN of what it has not.
+/// Peak and after-shake of a record, from the impact of its own wheel; NaN if they are not in the record.
 fn sizes(of: &Record, key: &Key, (feeling, rate): (&[Key], f64)) -> Result<[f64; 2], CompareError> {
     let Some(own) = of.get(key) else {
         return Ok([f64::NAN; 2]);
@@ -157,7 +157,7 @@ fn sizes(of: &Record, key: &Key, (feeling, rate): (&[Key], f64)) -> Result<[f64;
     Ok([errors.peaks[0], errors.after_shakes[0]])
 }
 
-/// NaN beyond the ends, and where nothing was recorded.
+/// Value of a record; NaN beyond its ends and without a record.
 fn sample(record: Option<&[f64]>, place: isize) -> f64 {
     let place = usize::try_from(place).ok();
     let found = record.zip(place).and_then(|(record, place)| record.get(place));

@@ -12,7 +12,7 @@ use super::ratios::Largest;
 use crate::table::{Table, noted, number, or_dash};
 use crate::units;
 
-/// What the terminal gets.
+/// The text for the terminal.
 pub(super) fn text(of: &Comparison, result: &Result, folder: Option<&Path>) -> String {
     let [a, b] = [&result.a, &result.b];
     let models = match a.model == b.model {
@@ -43,7 +43,7 @@ pub(super) fn text(of: &Comparison, result: &Result, folder: Option<&Path>) -> S
     out
 }
 
-/// Those that moved, and how many did not.
+/// Parameters that differ, and the number of the others.
 fn parameters(of: &[Parameter]) -> String {
     let own: Vec<&Parameter> = of.iter().filter(|own| own.tied_to.is_none()).collect();
     let shown: Vec<&&Parameter> = own.iter().filter(|own| own.differs()).collect();
@@ -97,7 +97,7 @@ fn modes(of: &[Pair]) -> String {
     table.text()
 }
 
-/// How much of the models is another; `qcar diff` prints what.
+/// Number of differences between the models; `qcar diff` prints them.
 fn changes(of: &Comparison) -> String {
     let line = |part: &qcar_dsl::difference::Part| format!("{} {}", part.changes.len(), part.heading);
     let counts: Vec<String> = of.difference.parts.iter().map(line).collect();
@@ -107,7 +107,7 @@ fn changes(of: &Comparison) -> String {
     }
 }
 
-/// How much B is above A, and how well each meets what was measured.
+/// Difference of B from A, and the fit of each to the measurement.
 fn transmissibility(of: &Result) -> String {
     let all = &of.transmissibility;
     let (measured, fits) = (
@@ -188,7 +188,7 @@ fn three(of: Option<Spread>) -> [String; 3] {
 
 fn percent(share: Option<f64>) -> String {
     let finite = share.filter(|share| share.is_finite());
-    // Nothing below zero is left of what rounds to it.
+    // Avoids a negative zero after rounding.
     let tenths = |share: f64| (1000.0 * share).round() / 10.0 + 0.0;
     finite.map_or("-".into(), |share| format!("{:.1}", tenths(share)))
 }

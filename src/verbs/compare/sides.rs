@@ -1,4 +1,4 @@
-//! A and B as sides of a comparison: each a model with values, and its measurements.
+//! The sides A and B of a comparison: each a model with values, and its measurements.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -16,47 +16,47 @@ use crate::parameters::{self, Beside};
 use crate::verbs::fit::{self, Choices};
 use crate::verbs::kc::{self, Gradient};
 
-/// One of the two.
+/// A side.
 pub(super) struct Side {
-    /// As the user has named it.
+    /// Name as the user gave it.
     pub name: String,
-    /// As it runs.
+    /// The model, ready to run.
     pub model: Loaded,
-    /// As the compiler sees it.
+    /// The model of the compiler.
     pub compiled: Compiled,
-    /// Of all parameters.
+    /// Values of all parameters.
     pub values: Values,
     /// Standard errors, by name.
     pub errors: BTreeMap<String, f64>,
-    /// What it stands on.
+    /// Vehicle data.
     pub vehicle: Vehicle,
-    /// Only of a campaign.
+    /// Measurements; `None` if the side is no campaign.
     pub measured: Option<Measured>,
 }
 
-/// Facts of a vehicle.
+/// Vehicle data.
 #[derive(Clone, Default)]
 pub(super) struct Vehicle {
-    /// By name, SI.
+    /// Values by name, SI.
     pub facts: BTreeMap<String, f64>,
-    /// Where they stand, or should.
+    /// The file with the data, for error messages.
     pub file: PathBuf,
 }
 
-/// A campaign, and what its rigs say.
+/// A campaign and its measurements.
 pub(super) struct Measured {
-    /// As its file describes it.
+    /// The campaign.
     pub campaign: Campaign,
     /// Transmissibilities, run by run.
     pub levels: Vec<Level>,
-    /// Of the K&C curves.
+    /// Gradients of the K&C curves.
     pub gradients: Vec<Gradient>,
 }
 
 /// Both sides of a subject.
 ///
 /// # Errors
-/// What cannot be read, compiled, resolved or fitted, and a parameter set without a model.
+/// Fails if something cannot be read, compiled, resolved or fitted, or if a parameter set has no model.
 pub(super) fn sides(of: &Subject, arguments: &Arguments) -> Result<[Side; 2], Failure> {
     let [a, b] = match of {
         Subject::Parameters([a, b]) => sets([a, b], arguments)?,
@@ -72,14 +72,14 @@ pub(super) fn sides(of: &Subject, arguments: &Arguments) -> Result<[Side; 2], Fa
     Ok([a, b])
 }
 
-/// What lies below the values of both sides: those of the campaign, and above them those of the file for both.
+/// Common values of both sides: those of the campaign, overridden by those of the common file.
 fn common(arguments: &Arguments) -> Vec<PathBuf> {
     let campaign = arguments.campaign.iter().map(|folder| folder.join("campaign.toml"));
     campaign.chain(arguments.params.clone()).collect()
 }
 
 impl Vehicle {
-    /// What files say of it, a later one above an earlier one.
+    /// Vehicle data of files; a later file takes precedence.
     fn read(files: &[PathBuf]) -> Result<Self, Failure> {
         let mut vehicle = Vehicle {
             facts: BTreeMap::new(),
@@ -112,7 +112,7 @@ fn sets(files: [&PathBuf; 2], arguments: &Arguments) -> Result<[Side; 2], Failur
     Ok([side(files[0], &beside[0])?, side(files[1], &beside[1])?])
 }
 
-/// The model that both sets are for: the user's, else that of the fits, else the campaign's.
+/// The model of both sets: that of the user, otherwise that of the fits, otherwise that of the campaign.
 fn model_of_sets(beside: &[Beside; 2], arguments: &Arguments) -> Result<String, Failure> {
     if let Some(model) = &arguments.model {
         return Ok(model.clone());
@@ -175,7 +175,7 @@ fn refuse_what_a_fit_decides(arguments: &Arguments) -> Result<(), Failure> {
     .into())
 }
 
-/// A campaign: its model fitted to its rig runs, or where it has none, with its start values.
+/// A campaign: its model fitted to its rig runs, or with its start values without rig runs.
 fn campaign(folder: &Path, arguments: &Arguments) -> Result<Side, Failure> {
     let wanted = arguments.model.as_deref();
     let campaign = Campaign::open(folder)?;
@@ -208,7 +208,7 @@ fn campaign(folder: &Path, arguments: &Arguments) -> Result<Side, Failure> {
     })
 }
 
-/// What the rig runs of a campaign give.
+/// Measured ratios of the rig runs of a campaign.
 struct Rig {
     model: Loaded,
     values: Values,

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::catalogue;
 use crate::failure::{Failure, flag};
 
-/// Two of a kind.
+/// Two arguments of one kind.
 #[derive(Debug, PartialEq)]
 pub(super) enum Subject {
     /// Files of parameter values.
@@ -17,10 +17,10 @@ pub(super) enum Subject {
 }
 
 impl Subject {
-    /// What two arguments mean.
+    /// The kind of two arguments.
     ///
     /// # Errors
-    /// An argument that is nothing to compare or could be two things, and two of unlike kinds.
+    /// Fails if an argument is of no kind or of two kinds, or if the kinds differ.
     pub fn of(first: &str, second: &str) -> Result<Self, Failure> {
         match (one("A", first)?, one("B", second)?) {
             (One::Parameters(a), One::Parameters(b)) => Ok(Subject::Parameters([a, b])),
@@ -89,7 +89,7 @@ fn one(name: &str, text: &str) -> Result<One, Failure> {
     }
 }
 
-/// A campaign, or what a fit has written.
+/// A campaign, or the result of a fit.
 fn folder(path: &Path) -> Option<One> {
     let answer = path.join("fit.json");
     if path.join("campaign.toml").is_file() {

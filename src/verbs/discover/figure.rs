@@ -1,11 +1,11 @@
-//! The residual over frequency before and after, a panel for each sensor.
+//! The residuals over frequency before and after, in one panel for each sensor.
 
-use qcar_runtime::discover::posterior::Gap;
+use qcar_runtime::discover::posterior::Misfit;
 use qcar_runtime::transmissibility::Point;
 
 use crate::figure::{Across, Curve, Figure, Panel, Style};
 
-pub(super) fn gap(title: String, [before, after]: [&Gap; 2]) -> Figure {
+pub(super) fn residuals(title: String, [before, after]: [&Misfit; 2]) -> Figure {
     let mut sensors: Vec<&Point> = before.tiles.iter().map(|tile| &tile.sensor).collect();
     sensors.sort();
     sensors.dedup();
@@ -24,9 +24,9 @@ pub(super) fn gap(title: String, [before, after]: [&Gap; 2]) -> Figure {
     }
 }
 
-/// The first harmonics' tiles of all levels, in the order of frequency.
-fn curve(label: &'static str, style: Style, gap: &Gap, sensor: &Point) -> Curve {
-    let of_sensor = gap
+/// Tiles of the first harmonics of all levels, by frequency.
+fn curve(label: &'static str, style: Style, misfit: &Misfit, sensor: &Point) -> Curve {
+    let of_sensor = misfit
         .tiles
         .iter()
         .filter(|tile| tile.sensor == *sensor && tile.kind.order() == Some(1));

@@ -26,7 +26,7 @@ pub(super) fn table(finding: &Finding, of: &BTreeMap<String, String>) -> String 
 }
 
 pub(super) fn described(finding: &Finding, of: &BTreeMap<String, String>) -> String {
-    let share = 100.0 * finding.closed;
+    let share = 100.0 * finding.explained;
     let form = finding
         .form
         .as_deref()
@@ -58,19 +58,19 @@ pub(super) fn described(finding: &Finding, of: &BTreeMap<String, String>) -> Str
 mod tests {
     use super::*;
 
-    /// A value that comes from a start rather than from the data must not pass for one that was found.
+    /// A value that comes from the start instead of the data must not look like an estimate.
     #[test]
-    fn what_the_runs_do_not_determine_is_said() {
+    fn undetermined_parameters_are_named() {
         let finding = Finding {
             effect: "suspended_mass".into(),
             at: "body".into(),
             form: None,
             parameters: vec![("m_pwt".into(), 107.3, 1.1), ("k_pwt_x".into(), 3e5, f64::NAN)],
             evidence: 1e4,
-            closed: 1.0,
+            explained: 1.0,
             rivals: Vec::new(),
         };
-        let said = described(&finding, &BTreeMap::new());
-        assert!(said.ends_with("the fitted runs do not determine k_pwt_x\n"), "{said}");
+        let text = described(&finding, &BTreeMap::new());
+        assert!(text.ends_with("the fitted runs do not determine k_pwt_x\n"), "{text}");
     }
 }

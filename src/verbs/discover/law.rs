@@ -1,4 +1,4 @@
-//! The law that was learned if no effect of the catalogue explains the residuals: as an effect file, as a model, and in words.
+//! A learned law as an effect file, as part of a model, and as text.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -12,24 +12,24 @@ use crate::files::put;
 use crate::table::number;
 use crate::workshop::Bench;
 
-/// What was learned, ready to be told and written.
+/// The learned laws, ready to be printed and written.
 pub(crate) struct LearnedModel {
-    /// Each law.
+    /// The laws.
     pub laws: Vec<Law>,
-    /// The model with all of them.
+    /// The model with all laws.
     pub model: Written,
 }
 
 /// A law at a place.
 pub(crate) struct Law {
-    /// What it is like.
+    /// Description of the law.
     pub words: String,
     /// Units of its parameters.
     pub units: BTreeMap<String, String>,
-    /// The name of its effect file, which tells one law at two places apart, and the text with the values found.
+    /// File name of its effect file, which contains the place, and text of the file with the fitted values.
     name: String,
     text: String,
-    /// Where that was written.
+    /// Path of the effect file; `None` before it is written.
     pub file: Option<PathBuf>,
 }
 
@@ -41,7 +41,7 @@ fn errors(of: &Finding) -> Errors {
     parameters.map(|(name, _, error)| (name.clone(), *error)).collect()
 }
 
-/// Puts the laws into the model of the bench; `None` where one does not apply there.
+/// Adds the laws to the model of the bench; `None` if one does not apply there.
 pub(super) fn learned_model(mut bench: Bench, learned: &Learned) -> Option<LearnedModel> {
     let why = format!(
         "Evidence: no effect of the catalogue explains the residuals; this law explains {:.0} % of them.",
@@ -88,7 +88,7 @@ impl LearnedModel {
     /// Writes the model and an effect file for each law.
     ///
     /// # Errors
-    /// A folder that cannot be written to.
+    /// Fails if the folder cannot be written to.
     pub(super) fn write(&mut self, folder: &Path) -> Result<(), Failure> {
         self.model.write(folder)?;
         for law in &mut self.laws {
@@ -99,8 +99,8 @@ impl LearnedModel {
     }
 }
 
-/// What a law is like: each of its curves in a sentence, and each parameter beside them that is determined; or which of its coefficients
-/// count. The longest run takes `longest` s.
+/// Description of a law: a sentence for each curve and each other parameter that is determined. A law without curves is
+/// described by its largest coefficients. `longest` is the duration of the longest run, s.
 fn words(patch: &Patch, parameters: &[NewParameter], errors: &Errors, longest: f64) -> String {
     let curves = patch.curves();
     if curves.is_empty() {
@@ -108,33 +108,33 @@ fn words(patch: &Patch, parameters: &[NewParameter], errors: &Errors, longest: f
     }
     let sentences = curves.iter().map(|curve| of_curve(curve, parameters, errors, longest));
     let is_of_curve = |name: &String| curves.iter().any(|curve| curve.holds(name));
-    let is_told = |own: &&NewParameter| {
+    let is_mentioned = |own: &&NewParameter| {
         let is_determined = errors.get(&own.effect_name).is_some_and(|error| *error < DETERMINED);
         !own.known && is_determined && !is_of_curve(&own.effect_name)
     };
-    let beside = parameters.iter().filter(is_told);
+    let beside = parameters.iter().filter(is_mentioned);
     let beside = beside.map(|own| format!("{} = {} ({})", own.effect_name, number(own.start, 3), own.doc));
     let sentences: Vec<String> = sentences.chain(beside).collect();
     format!("{}; no memory", sentences.join("; "))
 }
 
 /// A coefficient is mentioned if it has at least this share of their sum.
-const WORTH_TELLING: f64 = 0.1;
+const MENTIONED: f64 = 0.1;
 
 fn shares(parameters: &[NewParameter]) -> String {
     let free: Vec<&NewParameter> = parameters.iter().filter(|own| !own.known).collect();
     let sum: f64 = free.iter().map(|own| own.start).sum();
     let unit = free.first().map_or(String::new(), |own| own.unit.to_string());
-    let told = free.iter().filter(|own| own.start >= WORTH_TELLING * sum);
-    let told = told.map(|own| format!("{:.0} % {} ({})", 100.0 * own.start / sum, own.effect_name, own.doc));
+    let largest = free.iter().filter(|own| own.start >= MENTIONED * sum);
+    let largest = largest.map(|own| format!("{:.0} % {} ({})", 100.0 * own.start / sum, own.effect_name, own.doc));
     format!(
         "{} {unit} in all: {}",
         number(sum, 3),
-        told.collect::<Vec<_>>().join(", ")
+        largest.collect::<Vec<_>>().join(", ")
     )
 }
 
-/// Both directions are called alike where they differ by less than this part of the largest change.
+/// Both directions count as equal if they differ by less than this share of the largest change.
 const ALIKE: f64 = 0.1;
 /// A point is mentioned if its standard error is below this share of the curve's value at rest.
 const DETERMINED: f64 = 0.5;
@@ -169,11 +169,11 @@ fn of_curve(curve: &Curve, parameters: &[NewParameter], errors: &Errors, longest
         .iter()
         .map(|(_, y)| (y - rest.unwrap_or(0.0)).abs())
         .fold(0.0, f64::max);
-    let told = |points: &[(f64, f64)], of: &str| {
-        let told = points
+    let listed = |points: &[(f64, f64)], of: &str| {
+        let values = points
             .iter()
             .map(|(x, y)| format!("{} at {}", number(*y, 3), number(x.abs(), 3)));
-        format!("{} {unit} {of}", told.collect::<Vec<_>>().join(", "))
+        format!("{} {unit} {of}", values.collect::<Vec<_>>().join(", "))
     };
     let is_even = compression.len() == rebound.len()
         && compression
@@ -182,14 +182,14 @@ fn of_curve(curve: &Curve, parameters: &[NewParameter], errors: &Errors, longest
             .all(|(a, b)| (a.1 - b.1).abs() < ALIKE * largest);
     let sides = match (compression.is_empty(), rebound.is_empty()) {
         (true, true) => return format!("over the {over} it is not determined"),
-        (false, false) if is_even => told(&rebound, "in both directions"),
+        (false, false) if is_even => listed(&rebound, "in both directions"),
         (false, false) => format!(
             "{} and {}",
-            told(&compression, "in compression"),
-            told(&rebound, "in rebound")
+            listed(&compression, "in compression"),
+            listed(&rebound, "in rebound")
         ),
-        (_, true) => told(&compression, "in compression; rebound is not determined"),
-        (true, _) => told(&rebound, "in rebound; compression is not determined"),
+        (_, true) => listed(&compression, "in compression; rebound is not determined"),
+        (true, _) => listed(&rebound, "in rebound; compression is not determined"),
     };
     match rest {
         Some(rest) => format!("over the {over} it changes from {} at rest to {sides}", number(rest, 3)),
@@ -206,17 +206,20 @@ fn is_clock(name: &str, parameters: &[NewParameter]) -> bool {
 fn of_time(points: &[(f64, f64)], unit: String, longest: f64) -> String {
     let end = if unit == "s" { longest } else { 1.0 };
     let later = side(points, 1.0).into_iter().filter(|(time, _)| *time <= end);
-    let told: Vec<String> = later
+    let values: Vec<String> = later
         .map(|(time, y)| format!("{} after {}", number(y, 3), number(time, 3)))
         .collect();
-    if told.is_empty() {
+    if values.is_empty() {
         return "how it changes with time is not determined".into();
     }
     let unit = if unit == "1" { "of the run".into() } else { unit };
-    format!("it changes from 1 at the start of a run to {} {unit}", told.join(", "))
+    format!(
+        "it changes from 1 at the start of a run to {} {unit}",
+        values.join(", ")
+    )
 }
 
-/// The points to one side of rest, from there on, without those that only repeat the last.
+/// The points on one side of zero, from zero outwards, without repeated values.
 fn side(points: &[(f64, f64)], sign: f64) -> Vec<(f64, f64)> {
     let mut own: Vec<(f64, f64)> = points.iter().filter(|(x, _)| x * sign > 0.0).copied().collect();
     own.sort_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
@@ -258,11 +261,11 @@ mod tests {
         }
     }
 
-    fn said(values: [f64; 4], errors: [f64; 4]) -> String {
-        said_of(&curve(), values, errors)
+    fn text(values: [f64; 4], errors: [f64; 4]) -> String {
+        text_of(&curve(), values, errors)
     }
 
-    fn said_of(curve: &Curve, values: [f64; 4], errors: [f64; 4]) -> String {
+    fn text_of(curve: &Curve, values: [f64; 4], errors: [f64; 4]) -> String {
         let names = ["a", "b", "c", "d"];
         let mut parameters: Vec<NewParameter> = names
             .iter()
@@ -279,26 +282,26 @@ mod tests {
     }
 
     #[test]
-    fn a_curve_is_told_by_its_points() {
+    fn a_curve_is_described_by_its_points() {
         assert_eq!(
-            said([0.5, 0.5, 0.5, 0.5], [0.01; 4]),
+            text([0.5, 0.5, 0.5, 0.5], [0.01; 4]),
             "over the speed it changes from 1 at rest to 0.5 at 0.2, 0.25 at 0.4 1 in both directions"
         );
         assert!(
-            said([0.5, 0.5, 2.0, 1.5], [0.01; 4])
+            text([0.5, 0.5, 2.0, 1.5], [0.01; 4])
                 .contains("0.5 at 0.2, 0.25 at 0.4 1 in compression and 2 at 0.2, 3 at 0.4 1 in rebound")
         );
     }
 
     #[test]
-    fn what_changes_with_time_is_told_by_the_time() {
+    fn a_change_with_time_is_described_by_times() {
         let points = [(0.0, 1.0), (10.0, 0.9), (30.0, 0.75), (100.0, 0.75)];
-        let told = |longest: f64| of_time(&points, "s".into(), longest);
+        let text = |longest: f64| of_time(&points, "s".into(), longest);
         assert_eq!(
-            told(120.0),
+            text(120.0),
             "it changes from 1 at the start of a run to 0.9 after 10, 0.75 after 30 s"
         );
-        assert_eq!(told(20.0), "it changes from 1 at the start of a run to 0.9 after 10 s");
+        assert_eq!(text(20.0), "it changes from 1 at the start of a run to 0.9 after 10 s");
         assert_eq!(
             of_time(&points[..1], "1".into(), 20.0),
             "how it changes with time is not determined"
@@ -306,21 +309,21 @@ mod tests {
     }
 
     #[test]
-    fn a_value_at_rest_that_is_not_determined_is_not_told() {
+    fn an_undetermined_value_at_rest_is_left_out() {
         let mut curve = curve();
         curve.points[2].1 = Ordinate::Product(vec!["c".into(), "b".into()]);
         assert_eq!(
-            said_of(&curve, [0.5, 0.5, 2.0, 1.5], [f64::NAN, f64::NAN, 0.01, 0.01]),
+            text_of(&curve, [0.5, 0.5, 2.0, 1.5], [f64::NAN, f64::NAN, 0.01, 0.01]),
             "over the speed it is 2 at 0.2, 3 at 0.4 1 in rebound; compression is not determined; at rest it is not determined"
         );
     }
 
-    /// A point that no run has reached has the value of its neighbour, which was not measured.
+    /// A point beyond all runs has the value of its neighbour, without a measurement.
     #[test]
-    fn what_is_not_determined_is_not_told() {
-        let said = said([0.5, 0.5, 2.0, 1.5], [0.01, f64::NAN, f64::INFINITY, 0.01]);
+    fn undetermined_values_are_left_out() {
+        let text = text([0.5, 0.5, 2.0, 1.5], [0.01, f64::NAN, f64::INFINITY, 0.01]);
         assert_eq!(
-            said,
+            text,
             "over the speed it changes from 1 at rest to 0.5 at 0.2 1 in compression; rebound is not determined"
         );
     }

@@ -1,4 +1,4 @@
-//! The law that was learned, as text for people and as JSON for programs.
+//! The learned law, as text and as JSON.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -12,12 +12,12 @@ use super::law::Law;
 use crate::json::Ordered;
 use crate::left::BeforeAfter;
 
-/// Laws that close the gap where no effect of the catalogue does.
+/// Learned laws, for residuals that no effect of the catalogue explains.
 #[derive(Serialize)]
 pub(super) struct Learned<'a> {
-    /// The place of the first of them.
+    /// Place of the first law.
     at: &'a str,
-    /// Share of the excess gap of the runs that judge that all of them close.
+    /// Share of the excess residual on the held-out runs that all laws explain.
     explained: f64,
     gap: BTreeMap<&'static str, BeforeAfter>,
     laws: Vec<One<'a>>,
@@ -35,10 +35,10 @@ struct One<'a> {
     effect_file: Option<String>,
 }
 
-/// `None` where none was needed, or none helps.
+/// `None` without a learned law.
 pub(super) fn learned(of: &Answer) -> Option<Learned<'_>> {
     let (own, model) = (of.discovery.learned.as_ref()?, of.learned.as_ref()?);
-    let (before, after) = (&of.discovery.before.gap, &own.explanation.gap);
+    let (before, after) = (&of.discovery.before.misfit, &own.explanation.misfit);
     Some(Learned {
         at: &own.laws.first()?.at,
         explained: own.explained,
@@ -65,7 +65,7 @@ fn one<'a>((finding, law): (&'a Finding, &'a Law)) -> One<'a> {
     }
 }
 
-/// What was learned; nothing where nothing was.
+/// The learned laws; empty without any.
 pub(super) fn text(of: &Answer) -> String {
     let (Some(own), Some(model)) = (&of.discovery.learned, &of.learned) else {
         return String::new();

@@ -1,4 +1,4 @@
-//! The nuisance effects that were fitted with the answer, as text for people and as JSON for programs.
+//! The nuisance effects that were fitted with the answer, as text and as JSON.
 
 use std::collections::BTreeMap;
 
@@ -36,7 +36,7 @@ fn nuisance(of: &Finding) -> Nuisance<'_> {
     }
 }
 
-/// A paragraph for each; nothing without any.
+/// A paragraph for each; empty without any.
 pub(super) fn text(of: &Answer) -> String {
     let paragraph = |own: &Finding| {
         let table = table(own, &effects::units(&own.effect));

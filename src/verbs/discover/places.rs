@@ -3,39 +3,39 @@
 use qcar_dsl::expr::{Expr, Symbol};
 use qcar_dsl::model::{CoordinateKind, Link, Model, Term};
 use qcar_runtime::discover::locate::{Shape, shape};
-use qcar_runtime::discover::{Kappa, Place};
+use qcar_runtime::discover::{MissingStiffness, Place};
 use serde::Serialize;
 
 use super::Answer;
 
-/// Places that are listed.
+/// Number of listed places.
 const LISTED: usize = 5;
 
-/// A place, as effects call it.
+/// A place, as effect files name it.
 #[derive(PartialEq, Serialize)]
 pub(crate) struct Site {
     /// The link, mass or sensor location.
     pub at: String,
-    /// The axis of a sensor: its signal, not the model, would be wrong.
+    /// Axis of the sensor, if the signal of a sensor instead of the model would be wrong; `None` for a link or mass.
     pub sensor: Option<&'static str>,
 }
 
-/// A place, with what is missing if it is missing there.
+/// A place and the dynamic stiffness that would have to be added there.
 #[derive(Serialize)]
 pub(crate) struct Missing {
-    /// Where.
+    /// The place.
     #[serde(flatten)]
     pub site: Site,
-    /// Share of the squared gap that the best κ there explains: what no effect there can exceed.
+    /// Share of the squared residual that the best κ there explains: the limit for any effect there.
     pub explains: f64,
-    /// The dynamic stiffness that would have to be added, run by run.
+    /// κ, the dynamic stiffness that would have to be added, run by run.
     kappa: Vec<Stiffness>,
-    /// The coarse law of it.
+    /// Kind of law that κ resembles.
     pub shape: Shape,
 }
 
 impl Site {
-    /// In words.
+    /// As text.
     pub fn name(&self) -> String {
         match self.sensor {
             Some(axis) => format!("the sensor of {} along {axis}", self.at),
@@ -44,7 +44,7 @@ impl Site {
     }
 }
 
-/// κ at a frequency: N/m; of a sensor the factor on its signal, less 1.
+/// κ at one frequency, N/m; for a sensor, the factor on its signal minus 1.
 #[derive(Serialize)]
 struct Stiffness {
     hz: f64,
@@ -52,13 +52,13 @@ struct Stiffness {
     im: f64,
     /// Standard deviation of both parts together.
     sigma: f64,
-    /// Of the run.
+    /// Level of the run.
     level: f64,
 }
 
-/// The places that explain most, the best first.
+/// The places that explain most, best first.
 pub(crate) fn places(of: &Answer) -> Vec<Missing> {
-    let missing = |(site, kappa): (Site, &Kappa)| Missing {
+    let missing = |(site, kappa): (Site, &MissingStiffness)| Missing {
         site,
         explains: kappa.ceiling,
         kappa: stiffness(kappa),
@@ -67,9 +67,9 @@ pub(crate) fn places(of: &Answer) -> Vec<Missing> {
     sites(of).into_iter().take(LISTED).map(missing).collect()
 }
 
-/// Every place once, by what explains most there, the best first.
-pub(crate) fn sites(of: &Answer) -> Vec<(Site, &Kappa)> {
-    let mut found: Vec<(Site, &Kappa)> = Vec::new();
+/// Every place with its best κ, best first.
+pub(crate) fn sites(of: &Answer) -> Vec<(Site, &MissingStiffness)> {
+    let mut found: Vec<(Site, &MissingStiffness)> = Vec::new();
     for kappa in &of.sweeps.places {
         let site = site(&of.base, &kappa.place);
         if found.iter().all(|(other, _)| *other != site) {
@@ -79,19 +79,19 @@ pub(crate) fn sites(of: &Answer) -> Vec<(Site, &Kappa)> {
     found
 }
 
-/// Of what any effect at a place could explain of the sweeps, the share that all that was found explains; `None` where
-/// nothing says so.
+/// Share of the sweeps' residual that the findings explain, relative to the largest share that any effect at `place` could
+/// explain; `None` if it is unknown.
 pub(crate) fn of_ceiling(of: &Answer, place: &str) -> Option<f64> {
     let there = of
         .sweeps
         .places
         .iter()
         .find(|kappa| site(&of.base, &kappa.place).at == place)?;
-    let explained = of.sweeps.explained_by(&of.discovery.after.gap, &of.evidence)?;
+    let explained = of.sweeps.explained_by(&of.discovery.after.misfit, &of.evidence)?;
     Some(explained / there.ceiling)
 }
 
-fn stiffness(kappa: &Kappa) -> Vec<Stiffness> {
+fn stiffness(kappa: &MissingStiffness) -> Vec<Stiffness> {
     let mut all = Vec::new();
     for run in &kappa.runs {
         for ((hz, value), sigma) in run.frequency.iter().zip(&run.value).zip(&run.sigma) {
@@ -120,7 +120,7 @@ fn site(model: &Model, place: &Place) -> Site {
     }
 }
 
-/// The link or mass that a parameter belongs to: the one that depends on the fewest others.
+/// The link or mass that a parameter belongs to: of those that depend on it, the one with the fewest parameters.
 fn owner(model: &Model, parameter: usize) -> String {
     let links = model.links.iter().map(|link| (&link.name, law(link)));
     let masses = model.coordinates.iter().filter_map(|own| match own.kind {

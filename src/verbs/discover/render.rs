@@ -1,13 +1,14 @@
-//! The answer of a search, as text for people and as JSON for programs.
+//! The answer of a search, as text and as JSON.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use qcar_runtime::discover::answer::{Finding, Probable, Rival, Verdict, Visible};
+use qcar_runtime::discover::answer::{DetectionLimit, Finding, Probable, Rival, Verdict};
 use qcar_runtime::discover::numbers::EVEN;
 use qcar_runtime::discover::observe::Kind;
 use qcar_runtime::discover::posterior::{Explanation, Tile};
+use qcar_runtime::mean::rms_or_nan;
 use qcar_runtime::transmissibility::Point;
 use serde::Serialize;
 
@@ -26,18 +27,18 @@ use crate::units;
 #[derive(Serialize)]
 pub(crate) struct Result<'a> {
     verdict: Verdict,
-    /// How probable the answer is.
+    /// Probability of the answer.
     probability: Option<f64>,
     /// The most probable effects.
     candidates: &'a [Probable],
-    /// What is left of each sensor on the runs that judge.
+    /// Residual of each sensor on the held-out runs, or on the fitted runs if none is held out.
     left: Vec<Left>,
     effects: Vec<Effect<'a>>,
-    /// What every real car has some of, fitted with them.
+    /// Nuisance effects that were fitted with the findings.
     nuisances: Vec<Nuisance<'a>>,
     r#where: Vec<Where>,
     places: Vec<Missing>,
-    visible: Vec<Seen<'a>>,
+    visible: Vec<Limit<'a>>,
     learned: Option<learned::Learned<'a>>,
     gap: Gaps,
     by_channel: Ordered<BeforeAfter>,
@@ -53,7 +54,7 @@ struct Effect<'a> {
     name: &'a str,
     at: &'a str,
     form: Option<&'a str>,
-    /// Whether it is a member of a class.
+    /// True for an alternative of a class.
     one_of: bool,
     parameters: Ordered<f64>,
     stderr: Ordered<Option<f64>>,
@@ -62,7 +63,7 @@ struct Effect<'a> {
     rivals: &'a [Rival],
 }
 
-/// What a sensor of a record reads at zero.
+/// Zero offset of the sensor of a record.
 #[derive(Serialize)]
 struct Offset {
     channel: String,
@@ -72,9 +73,9 @@ struct Offset {
     unit: &'static str,
 }
 
-/// An effect that is not there, and how clearly it would have been seen.
+/// Detection limit of an effect that was not found.
 #[derive(Serialize)]
-struct Seen<'a> {
+struct Limit<'a> {
     name: &'a str,
     at: &'a str,
     usual: Ordered<f64>,
@@ -83,11 +84,12 @@ struct Seen<'a> {
 
 #[derive(Serialize)]
 struct Evidence {
-    /// Rise of the logarithm of the evidence with all that was found.
+    /// Increase of the log evidence by all findings.
     log_evidence: f64,
-    /// Share of the excess of the held-out gap.
+    /// Share of the excess residual that the findings explain.
     gap_closed: f64,
-    /// Of what any effect at this place could explain of the sweeps, the share that is explained; `null` of several effects.
+    /// Share of the sweeps' residual that is explained, relative to the largest share that any effect at this place could
+    /// explain; `null` if there are several findings.
     of_ceiling: Option<f64>,
 }
 
@@ -96,9 +98,9 @@ struct Where {
     channel: String,
     harmonic: Option<usize>,
     band_hz: Option<(f64, f64)>,
-    /// Where the values belong to times.
+    /// For values over time.
     window_s: Option<(f64, f64)>,
-    /// Where they belong to a travel of the wheel.
+    /// For values over the travel of the wheel.
     travel_m: Option<(f64, f64)>,
     speed_m_per_s: Option<(f64, f64)>,
     level: f64,
@@ -111,7 +113,7 @@ struct Gaps {
     held_out: BeforeAfter,
 }
 
-/// Tiles that are listed.
+/// Number of listed tiles.
 const LISTED: usize = 24;
 
 pub(super) fn json(of: &Answer) -> String {
@@ -119,7 +121,7 @@ pub(super) fn json(of: &Answer) -> String {
 }
 
 pub(crate) fn result(of: &Answer) -> Result<'_> {
-    let (before, after) = (&of.discovery.before.gap, &of.discovery.after.gap);
+    let (before, after) = (&of.discovery.before.misfit, &of.discovery.after.misfit);
     Result {
         verdict: of.discovery.verdict,
         probability: of.discovery.probability,
@@ -136,7 +138,7 @@ pub(crate) fn result(of: &Answer) -> Result<'_> {
         nuisances: nuisances::json(of),
         r#where: before.tiles.iter().take(LISTED).map(place).collect(),
         places: missing(of),
-        visible: of.discovery.visible.iter().map(seen).collect(),
+        visible: of.discovery.detection_limits.iter().map(limit).collect(),
         learned: learned::learned(of),
         gap: Gaps {
             fit: BeforeAfter::new(before.fit, after.fit),
@@ -155,7 +157,7 @@ pub(crate) fn result(of: &Answer) -> Result<'_> {
     }
 }
 
-/// The places at which something is missing; none where nothing is.
+/// Places that explain the residuals; none if the verdict is `None`.
 fn missing(of: &Answer) -> Vec<Missing> {
     match of.discovery.verdict {
         Verdict::None => Vec::new(),
@@ -177,7 +179,7 @@ fn effect<'a>(
         name: &finding.effect,
         at: &finding.at,
         form: finding.form.as_deref(),
-        one_of: place >= of.discovery.told_apart().0.len(),
+        one_of: place >= of.discovery.certain_and_alternatives().0.len(),
         parameters: each(|p| p.1).into_iter().collect(),
         stderr: each(|p| p.2)
             .into_iter()
@@ -186,19 +188,19 @@ fn effect<'a>(
         units,
         evidence: Evidence {
             log_evidence: finding.evidence,
-            gap_closed: finding.closed,
+            gap_closed: finding.explained,
             of_ceiling: places::of_ceiling(of, &finding.at).filter(|_| alone),
         },
         rivals: &finding.rivals,
     }
 }
 
-fn seen(of: &Visible) -> Seen<'_> {
-    Seen {
+fn limit(of: &DetectionLimit) -> Limit<'_> {
+    Limit {
         name: &of.effect,
         at: &of.at,
-        usual: of.usual.iter().cloned().collect(),
-        times_the_limit: of.times,
+        usual: of.default_size.iter().cloned().collect(),
+        times_the_limit: of.over_limit,
     }
 }
 
@@ -215,29 +217,29 @@ fn place(tile: &Tile) -> Where {
     }
 }
 
-/// The gap of each sensor over all runs.
+/// RMS of the normalised residuals of each sensor over all runs.
 fn by_channel(of: &Answer) -> Ordered<BeforeAfter> {
     let mut sensors: Vec<&Point> = of.evidence.series.iter().map(|series| &series.sensor).collect();
     sensors.sort();
     sensors.dedup();
-    let gap = |sensor: &Point, residuals: &[Vec<f64>]| {
+    let rms = |sensor: &Point, residuals: &[Vec<f64>]| {
         let of_sensor = of
             .evidence
             .series
             .iter()
             .zip(residuals)
             .filter(|(series, _)| series.sensor == *sensor);
-        qcar_runtime::discover::posterior::rms(of_sensor.flat_map(|(_, residuals)| residuals.iter().copied()))
+        rms_or_nan(of_sensor.flat_map(|(_, residuals)| residuals.iter().copied()))
     };
-    let (before, after) = (&of.discovery.before.gap, &of.discovery.after.gap);
+    let (before, after) = (&of.discovery.before.misfit, &of.discovery.after.misfit);
     let named = sensors.into_iter().map(|sensor| {
-        let gaps = BeforeAfter::new(gap(sensor, &before.residuals), gap(sensor, &after.residuals));
-        (channel(sensor), gaps)
+        let both = BeforeAfter::new(rms(sensor, &before.residuals), rms(sensor, &after.residuals));
+        (channel(sensor), both)
     });
     named.collect()
 }
 
-/// What the sensors of records read at zero beside the model.
+/// Zero offsets of the sensors of records.
 fn offsets(of: &Explanation) -> Vec<Offset> {
     let offsets = of.refit.offsets().into_iter();
     let offset = |(sensor, offset, stderr): (Point, f64, f64)| Offset {
@@ -250,7 +252,7 @@ fn offsets(of: &Explanation) -> Vec<Offset> {
     offsets.map(offset).collect()
 }
 
-/// The parameters that a search has driven to an end of their range, and to which.
+/// The parameters at a bound of their range, each with the name of the bound.
 fn at_bound(of: &Explanation) -> impl Iterator<Item = (String, &'static str)> {
     let free = of.refit.free.iter().zip(&of.refit.at_bound);
     free.filter_map(|(free, side)| {
@@ -263,7 +265,7 @@ fn at_bound(of: &Explanation) -> impl Iterator<Item = (String, &'static str)> {
     })
 }
 
-/// A parameter file as `--params` takes it. What the sensors read at zero stands in it as a remark.
+/// A parameter file for `--params`, with the zero offsets of the sensors as comments.
 pub(super) fn parameters(heading: &str, of: &Explanation) -> String {
     let mut out = format!("# {heading}\n\n[parameters]\n");
     let ends: BTreeMap<String, &str> = at_bound(of).collect();
@@ -300,16 +302,16 @@ fn offsets_table(of: &Explanation) -> String {
 }
 
 pub(super) fn text(of: &Answer) -> String {
-    let (before, after) = (&of.discovery.before.gap, &of.discovery.after.gap);
+    let (before, after) = (&of.discovery.before.misfit, &of.discovery.after.misfit);
     let mut out = format!("{}: {}\n{}\n", of.campaign, sentence(of), noted(&of.evidence.notices));
-    let mut gaps = Table::new(["residual_in_sd", "before", "after"]);
+    let mut residuals = Table::new(["residual_in_sd", "before", "after"]);
     for (name, before, after) in [
         ("fit", before.fit, after.fit),
         ("held_out", before.held_out, after.held_out),
     ] {
-        gaps.row(vec![name.into(), number(before, 3), number(after, 3)]);
+        residuals.row(vec![name.into(), number(before, 3), number(after, 3)]);
     }
-    out += &gaps.text();
+    out += &residuals.text();
     if let Some(probability) = of.discovery.probability {
         let _ = writeln!(out, "\nprobability of this answer: {probability:.3}");
     }
@@ -330,13 +332,13 @@ pub(super) fn text(of: &Answer) -> String {
     }
     if of.discovery.verdict != Verdict::None {
         out += &format!("\nlargest residuals of the campaign's model\n{}", tiles(of));
-        out += &missing(of).first().map_or_else(String::new, acts);
+        out += &missing(of).first().map_or_else(String::new, best_place);
     }
     out += &learned::text(of);
-    if !of.discovery.visible.is_empty() {
+    if !of.discovery.detection_limits.is_empty() {
         out += &format!(
             "\neffects that would have been found: their size relative to the smallest that is certain\n{}",
-            visible(of)
+            detection_limits(of)
         );
     }
     if let Some(file) = of.model.as_ref().and_then(|model| model.file.as_ref()) {
@@ -345,7 +347,7 @@ pub(super) fn text(of: &Answer) -> String {
     out
 }
 
-/// The most probable effects as a table; nothing without any.
+/// The most probable effects as a table; empty without any.
 fn candidates(all: &[Probable]) -> String {
     if all.is_empty() {
         return String::new();
@@ -363,7 +365,7 @@ fn candidates(all: &[Probable]) -> String {
     format!("\n{}", table.text())
 }
 
-/// What is left of each sensor.
+/// Residual of each sensor.
 fn remaining(of: &Answer) -> String {
     let mut table = Table::new(["residual_in_%_of_signal", "run", "before", "after"]);
     for own in left(&of.evidence, [&of.discovery.before, &of.discovery.after]) {
@@ -373,9 +375,9 @@ fn remaining(of: &Answer) -> String {
     format!("\n{}", table.text())
 }
 
-/// The verdict in words.
+/// The verdict as a sentence.
 pub(crate) fn sentence(of: &Answer) -> String {
-    let (found, class) = of.discovery.told_apart();
+    let (found, class) = of.discovery.certain_and_alternatives();
     match of.discovery.verdict {
         Verdict::None => nothing_found(of),
         Verdict::Found => format!("found {}", listed(found)),
@@ -389,18 +391,19 @@ pub(crate) fn sentence(of: &Answer) -> String {
     }
 }
 
-/// RMS residual in standard deviations above which noise does not explain it. Errors of sensors that are worse than their data
-/// sheets say leave less. `MUCH` in the report's `judgement.js` is the same limit.
-const MUCH: f64 = 2.0;
+/// RMS residual in standard deviations above which noise does not explain it. Sensors with errors beyond their data sheets
+/// leave less. `LARGE` in the report's `judgement.js` is the same limit.
+const LARGE: f64 = 2.0;
 
-/// Why there is no effect: the fitted runs show none, which does not mean that the model predicts all others.
+/// The verdict `None` as a sentence. It depends on the held-out runs: if the fitted runs show no effect, the model may
+/// still predict others badly.
 fn nothing_found(of: &Answer) -> String {
-    let gap = &of.discovery.before.gap;
+    let gap = &of.discovery.before.misfit;
     let (runs, left) = match gap.held_out.is_finite() {
         true => ("held-out", gap.held_out),
         false => ("fitted", gap.fit),
     };
-    if left > MUCH {
+    if left > LARGE {
         let left = number(left, 3);
         format!("no effect found, but the {runs} runs have residuals of {left} standard deviations")
     } else if is_doubtful(of) {
@@ -410,14 +413,14 @@ fn nothing_found(of: &Answer) -> String {
     }
 }
 
-/// True where the answer is less probable than its opposite.
+/// True if the probability of the answer is below one half.
 fn is_doubtful(of: &Answer) -> bool {
     of.discovery.probability.is_some_and(|probability| probability < EVEN)
 }
 
-/// What comes before the name of a finding that is one of several.
+/// Word before the name of a finding: `either` or `or` for an alternative.
 pub(crate) fn choice(of: &Answer, place: usize) -> &'static str {
-    let found = of.discovery.told_apart().0.len();
+    let found = of.discovery.certain_and_alternatives().0.len();
     match place.cmp(&found) {
         Ordering::Less => "",
         Ordering::Equal => "either ",
@@ -430,33 +433,33 @@ fn listed(findings: &[Finding]) -> String {
     names.collect::<Vec<_>>().join(" and ")
 }
 
-/// The place that explains most.
-fn acts(best: &Missing) -> String {
+/// Sentence on the place that explains most.
+fn best_place(best: &Missing) -> String {
     let share = 100.0 * best.explains;
     let (at, like) = (best.site.name(), best.shape.name());
     format!("something at {at} could explain {share:.1} % of the residuals of the sweeps; it would act like {like}\n")
 }
 
-/// How clearly each effect would have been seen.
-fn visible(of: &Answer) -> String {
+/// Detection limits as a table.
+fn detection_limits(of: &Answer) -> String {
     let mut table = Table::new(["effect", "at", "times_the_limit", "of_this_size"]);
-    for own in &of.discovery.visible {
+    for own in &of.discovery.detection_limits {
         let of_effect = effects::units(&own.effect);
-        let usual = own.usual.iter().map(|(name, value)| {
+        let usual = own.default_size.iter().map(|(name, value)| {
             let si = of_effect.get(name).map_or("1", String::as_str);
             units::with_unit(&format!("{name} {}", number(units::value(*value, si), 3)), si)
         });
         table.row(vec![
             own.effect.clone(),
             own.at.clone(),
-            number(own.times, 2),
+            number(own.over_limit, 2),
             usual.collect::<Vec<_>>().join(", "),
         ]);
     }
     table.text()
 }
 
-/// What a tile of the gap is a span of.
+/// Unit of the span of a tile.
 fn unit_of_span(kind: Kind) -> &'static str {
     match kind {
         Kind::Harmonic(_) | Kind::Cycle(_) => "Hz",
@@ -476,7 +479,7 @@ fn tiles(of: &Answer) -> String {
         "level",
         "times_the_uncertainty",
     ]);
-    for tile in of.discovery.before.gap.tiles.iter().take(8) {
+    for tile in of.discovery.before.misfit.tiles.iter().take(8) {
         let unit = unit_of_span(tile.kind);
         table.row(vec![
             channel(&tile.sensor),

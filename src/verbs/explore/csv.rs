@@ -1,4 +1,4 @@
-//! Rows as text.
+//! Rows as CSV.
 
 use std::fmt::Write as _;
 use std::fs::File;
@@ -6,18 +6,18 @@ use std::io::{self, BufRead, BufReader, Seek, SeekFrom, Write};
 
 use super::kept::Kept;
 
-/// A table that grows line by line.
+/// A CSV file that is written row by row.
 pub(super) struct Csv {
     file: File,
     width: usize,
 }
 
 impl Csv {
-    /// Goes on after the whole rows of a file with these columns, whose first column counts as `first` says; what is not
-    /// whole is taken away.
+    /// Continues a file with these columns after its complete rows, whose first column must be as `first` says. An
+    /// incomplete row is removed.
     ///
     /// # Errors
-    /// What the system says.
+    /// Fails with the error of the system.
     pub fn open(mut file: File, columns: &[String], first: impl Fn(u64) -> f64) -> io::Result<(Self, Kept)> {
         let header = columns.join(",") + "\n";
         let (mut kept, mut end) = (Kept::default(), 0);
@@ -43,10 +43,10 @@ impl Csv {
         Ok((Csv { file, width }, kept))
     }
 
-    /// Writes rows after the others, whole or not at all as far as the system can.
+    /// Appends rows, all or none as far as the system allows.
     ///
     /// # Errors
-    /// What the system says.
+    /// Fails with the error of the system.
     pub fn append(&mut self, rows: &[f64]) -> io::Result<()> {
         let mut text = String::new();
         for row in rows.chunks_exact(self.width) {
@@ -62,7 +62,7 @@ impl Csv {
     }
 }
 
-/// The numbers of the next row; `None` where there is no further one that is whole.
+/// The numbers of the next row; `None` if there is no further complete row.
 fn whole_row(reader: &mut impl BufRead, line: &mut Vec<u8>, width: usize) -> io::Result<Option<Vec<f64>>> {
     line.clear();
     reader.read_until(b'\n', line)?;

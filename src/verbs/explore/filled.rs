@@ -15,20 +15,20 @@ use crate::progress::Showing;
 use crate::table::counted;
 use crate::units;
 
-/// Rows of a block for each thread: enough to keep all of them busy to its end, and little memory.
+/// Rows of a block for each thread: enough to keep all threads busy, and little memory.
 const ROWS_OF_THREAD: usize = 64;
 
-/// Rows without metrics, and why the first has none.
+/// Rows without metrics, and the reason for the first.
 #[derive(Default)]
 struct Failed {
     rows: usize,
     first: Option<(u64, String)>,
 }
 
-/// Writes all rows of a part that are not there yet, and says what is there then.
+/// Writes all missing rows of a part, and describes the file.
 ///
 /// # Errors
-/// Results of something else under that name, and a place that cannot be written to; a finding where no row has metrics.
+/// Fails if a file with other results has that name, or if it cannot be written. It is a finding if no row has metrics.
 pub(super) fn fill<M: Model + ?Sized>(
     ensemble: &Ensemble<'_, M>,
     choice: &Choice,
@@ -40,7 +40,7 @@ pub(super) fn fill<M: Model + ?Sized>(
     let each = ensemble.rows_of_set() as u64;
     let rows = (sets.end - sets.start) * each;
     let ledger = Ledger::new(ensemble, choice, &headings, rows);
-    let said = format!(
+    let text = format!(
         "{}: {} of {}, {} in {}\n",
         ensemble.model.about().name,
         counted((sets.end - sets.start) as usize, "set"),
@@ -49,7 +49,7 @@ pub(super) fn fill<M: Model + ?Sized>(
         path.display()
     );
     if ledger.stand_beside(path)? == Standing::Done {
-        return Ok(said + "note: the file was already complete\n");
+        return Ok(text + "note: the file was already complete\n");
     }
     let resumed = "finished rows are in";
     interruption::note(&format!(
@@ -60,7 +60,7 @@ pub(super) fn fill<M: Model + ?Sized>(
     if kept.rows > rows {
         return Err(not_ours(path, "more rows than there are").into());
     }
-    // The set of the last row is computed again: a row that this program would not have written is seen there.
+    // Computes the last row again, to detect rows of another program version.
     let from = sets.start + kept.rows.saturating_sub(1) / each;
     let failed = write(
         ensemble,
@@ -70,10 +70,10 @@ pub(super) fn fill<M: Model + ?Sized>(
         path,
     )?;
     sink.finish()?;
-    let said = said + &notes(&failed, &kept);
+    let text = text + &notes(&failed, &kept);
     match failed.rows as u64 == rows && rows > 0 {
-        true => Err(Failure::Finding(said)),
-        false => Ok(said),
+        true => Err(Failure::Finding(text)),
+        false => Ok(text),
     }
 }
 
@@ -87,26 +87,26 @@ fn write<M: Model + ?Sized>(
     let each = ensemble.rows_of_set() as u64;
     let block = (ROWS_OF_THREAD * rayon::current_num_threads()).div_ceil(each as usize) as u64;
     let showing = Showing::new();
-    showing.tell(format!("{}: row", ensemble.model.about().name));
+    showing.step(format!("{}: row", ensemble.model.about().name));
     let mut failed = Failed::default();
     let mut at = sets.start;
     while at < sets.end {
         let until = sets.end.min(at + block);
         let found = ensemble.rows(at..until);
         let numbers = shown(columns, &found);
-        // What is kept of this block is not written again.
+        // Rows of this block that are already in the file are not written again.
         let known = kept.rows.saturating_sub((at - first) * each) as usize * columns.len();
         let (known, new) = numbers.split_at(known.min(numbers.len()));
         check_last(kept, known, columns.len(), path)?;
         sink.append(new)?;
         failed.count(at, &found, columns.len());
         at = until;
-        showing.far(((at - first) * each) as usize, ((sets.end - first) * each) as usize);
+        showing.count(((at - first) * each) as usize, ((sets.end - first) * each) as usize);
     }
     Ok(failed)
 }
 
-/// All numbers of a block, in the units that the user has chosen.
+/// All numbers of a block, in the units of the user.
 fn shown(columns: &[Column], block: &[Rows]) -> Vec<f64> {
     let numbers = block.iter().flat_map(|rows| &rows.numbers);
     let column = columns.iter().cycle();
@@ -117,7 +117,7 @@ fn shown(columns: &[Column], block: &[Rows]) -> Vec<f64> {
 }
 
 /// # Errors
-/// Where the last row that was kept is not what stands at its place.
+/// Fails if the last row of the file differs from the computed one.
 fn check_last(kept: &Kept, known: &[f64], width: usize, path: &Path) -> Result<(), InputError> {
     let (Some(last), Some(start)) = (&kept.last, known.len().checked_sub(width)) else {
         return Ok(());

@@ -6,21 +6,21 @@ use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use super::kept::Kept;
 use crate::parquet::{GROUP, MAGIC, Shape};
 
-/// A table that grows group by group.
+/// A Parquet file that is written group by group.
 pub(super) struct Grouped {
     file: File,
     shape: Shape,
-    /// Rows that make no whole group yet.
+    /// Rows of an incomplete group.
     waiting: Vec<f64>,
-    /// All rows.
+    /// Number of all rows.
     rows: u64,
 }
 
 impl Grouped {
-    /// Goes on after the whole groups of a file of this shape; what is not whole is taken away.
+    /// Continues a file of this shape after its complete groups. An incomplete group is removed.
     ///
     /// # Errors
-    /// What the system says.
+    /// Fails with the error of the system.
     pub fn open(mut file: File, shape: Shape) -> io::Result<(Self, Kept)> {
         let length = file.metadata()?.len();
         let mut magic = [0; 4];
@@ -52,10 +52,10 @@ impl Grouped {
         ))
     }
 
-    /// Takes rows, and writes the groups that they complete.
+    /// Adds rows and writes the groups that they complete.
     ///
     /// # Errors
-    /// What the system says.
+    /// Fails with the error of the system.
     pub fn append(&mut self, rows: &[f64]) -> io::Result<()> {
         let width = self.shape.columns.len();
         self.rows += (rows.len() / width) as u64;
@@ -67,10 +67,10 @@ impl Grouped {
         Ok(())
     }
 
-    /// Writes what waits, and the end.
+    /// Writes the remaining rows and the end of the file.
     ///
     /// # Errors
-    /// What the system says.
+    /// Fails with the error of the system.
     pub fn finish(&mut self) -> io::Result<()> {
         if !self.waiting.is_empty() {
             self.write(self.waiting.len())?;
@@ -89,7 +89,7 @@ impl Grouped {
     }
 }
 
-/// The last number of each column in the last of some groups.
+/// The last number of each column in the last of several groups.
 fn last_row(file: &mut File, shape: &Shape, groups: u64) -> io::Result<Vec<f64>> {
     let width = shape.columns.len() as u64;
     let column = shape.group_length(GROUP) / width;

@@ -1,9 +1,9 @@
 //! Rows of an earlier run.
 
-/// Rows that are there already.
+/// Existing rows.
 #[derive(Default)]
 pub(super) struct Kept {
-    /// How many are whole.
+    /// Number of complete rows.
     pub rows: u64,
     /// The last of them.
     pub last: Option<Vec<f64>>,

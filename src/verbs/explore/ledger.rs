@@ -1,4 +1,4 @@
-//! A description of a file of results, written beside it: the same command resumes, and any other one is refused.
+//! A description of a file of results, written beside it: the same command resumes the file, any other is refused.
 
 use std::path::{Path, PathBuf};
 
@@ -13,19 +13,19 @@ use super::sink::unfinished;
 use crate::files::put;
 use crate::json::Ordered;
 
-/// Everything on which a row depends.
+/// All inputs on which a row depends.
 #[derive(Serialize)]
 pub(super) struct Ledger {
     qcar: &'static str,
     model: String,
-    /// Of the model's generated code.
+    /// Hash of the generated code of the model.
     program: String,
-    /// Of all parameters, where nothing varies.
+    /// Values of all parameters that do not vary.
     parameters: Ordered<f64>,
     design: &'static str,
     sets: u64,
     seed: u64,
-    /// Ends of what varies; of a posterior its ranges.
+    /// Bounds of the varied parameters; for a posterior, its ranges.
     varied: Ordered<(f64, f64)>,
     posterior: Option<Drawn>,
     rides: Vec<(f64, f64)>,
@@ -36,38 +36,38 @@ pub(super) struct Ledger {
     columns: Vec<String>,
 }
 
-/// What a posterior is.
+/// Description of a posterior.
 #[derive(Serialize)]
 struct Drawn {
     /// Values and standard errors.
     estimates: Vec<(f64, f64)>,
-    /// The first draw, which tells its correlations.
+    /// The first draw, which depends on the correlations.
     first: Vec<f64>,
 }
 
-/// Whether there is something to be done.
+/// State of a file of results.
 #[derive(Debug, PartialEq)]
 pub(super) enum Standing {
-    /// The file is whole.
+    /// The file is complete.
     Done,
-    /// It is begun, or not even that.
+    /// The file is incomplete or missing.
     Open,
 }
 
-/// What the numbers of a design follow from, beside its axes.
+/// Inputs of a design, besides its axes.
 pub(super) struct Choice<'a> {
     /// Its name on the command line.
     pub scheme: &'static str,
     /// Seed.
     pub seed: u64,
-    /// Which part.
+    /// The part.
     pub part: Part,
-    /// Text of the program that computes them.
+    /// Version of the program that computes them.
     pub program: &'a str,
 }
 
 impl Ledger {
-    /// Of an ensemble.
+    /// The description of an ensemble.
     pub fn new<M: Model + ?Sized>(of: &Ensemble<'_, M>, choice: &Choice, columns: &[String], rows: u64) -> Self {
         let about = of.model.about();
         let name = |place: usize| about.parameters[place].name.to_string();
@@ -93,10 +93,10 @@ impl Ledger {
         }
     }
 
-    /// Checks the file at a path, and writes this beside it if there is something to do.
+    /// Checks the file at a path. If rows are missing, writes the description beside it.
     ///
     /// # Errors
-    /// Results of something else, and a place that cannot be written to.
+    /// Fails if the file has other results, or if it cannot be written.
     pub fn stand_beside(&self, path: &Path) -> Result<Standing, InputError> {
         let beside = beside(path);
         let own = serde_json::to_value(self).expect("keys are strings");
@@ -115,7 +115,7 @@ impl Ledger {
         Ok(Standing::Open)
     }
 
-    /// As it is written.
+    /// The text of the description.
     pub fn text(&self) -> String {
         let mut text = serde_json::to_string_pretty(self).expect("keys are strings");
         text.push('\n');
@@ -123,7 +123,7 @@ impl Ledger {
     }
 }
 
-/// Where it is written.
+/// Path of the description.
 fn beside(path: &Path) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(".design.json");

@@ -13,7 +13,7 @@ use crate::failure::flag;
 pub(super) enum Over {
     /// The twelve runs of the thesis.
     Standard,
-    /// A cleat: its height in m, and the speed in m/s.
+    /// A cleat: height in m, and speed in m/s.
     Cleat(f64, f64),
 }
 
@@ -36,10 +36,10 @@ impl FromStr for Over {
     }
 }
 
-/// The rides themselves.
+/// The rides.
 ///
 /// # Errors
-/// A height that makes no cleat.
+/// Fails if a height makes no cleat.
 pub(super) fn rides(wanted: &[Over]) -> Result<Vec<Standard>, InputError> {
     let mut rides = Vec::new();
     for own in wanted {

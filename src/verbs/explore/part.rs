@@ -3,12 +3,12 @@
 use std::ops::Range;
 use std::str::FromStr;
 
-/// The first is 1.
+/// A part; the first is 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Part {
-    /// Which.
+    /// Number of the part.
     pub number: u64,
-    /// Of how many.
+    /// Number of parts.
     pub of: u64,
 }
 
@@ -25,7 +25,7 @@ impl FromStr for Part {
 }
 
 impl Part {
-    /// Its sets of so many.
+    /// The sets of this part.
     pub fn sets(self, count: u64) -> Range<u64> {
         let until = |part: u64| (u128::from(count) * u128::from(part) / u128::from(self.of)) as u64;
         until(self.number - 1)..until(self.number)

@@ -12,7 +12,7 @@ use super::kept::Kept;
 use crate::files::finish;
 use crate::parquet::Shape;
 
-/// A table that grows.
+/// A table that is written row by row.
 pub(super) struct Sink {
     path: PathBuf,
     table: Table,
@@ -23,13 +23,13 @@ enum Table {
     Grouped(Grouped),
 }
 
-/// What the kinds of files end with.
+/// Endings of the kinds of files.
 const ENDINGS: [&str; 2] = ["csv", "parquet"];
 
-/// A file for results whose ending says what it is: the value of `--out`.
+/// A file for results, whose kind follows from its ending: the value of `--out`.
 ///
 /// # Errors
-/// Another ending.
+/// Fails if the ending is unknown.
 pub(super) fn table_for_results(name: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(name);
     match ending(&path).is_some_and(|own| ENDINGS.contains(&own)) {
@@ -42,7 +42,7 @@ fn ending(path: &Path) -> Option<&str> {
     path.extension()?.to_str()
 }
 
-/// The name of a file while it grows.
+/// The name of a file until it is complete.
 pub(super) fn unfinished(path: &Path) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(".part");
@@ -50,11 +50,11 @@ pub(super) fn unfinished(path: &Path) -> PathBuf {
 }
 
 impl Sink {
-    /// The table at a path with these columns, and what is there of it; `first` is the first column of a row. `about` is a
-    /// text for whoever asks the file what it is.
+    /// The table at a path with these columns, and its existing rows; `first` is the first column of a row. `about` is
+    /// a text for the metadata of the file.
     ///
     /// # Errors
-    /// A place that cannot be written to, and another qcar that is writing there.
+    /// Fails if the file cannot be written, or if another qcar writes it.
     pub fn open(
         path: &Path,
         columns: &[String],
@@ -78,10 +78,10 @@ impl Sink {
         Ok((Sink { path, table }, kept))
     }
 
-    /// Takes rows.
+    /// Adds rows.
     ///
     /// # Errors
-    /// A place that cannot be written to any more.
+    /// Fails if the file can no longer be written.
     pub fn append(&mut self, rows: &[f64]) -> Result<(), InputError> {
         let written = match &mut self.table {
             Table::Csv(csv) => csv.append(rows),
@@ -90,10 +90,10 @@ impl Sink {
         written.map_err(|error| of_file(&self.path, &error))
     }
 
-    /// Gives the file its name: it is whole.
+    /// Completes the file and gives it its final name.
     ///
     /// # Errors
-    /// A place that cannot be written to any more.
+    /// Fails if the file can no longer be written.
     pub fn finish(self) -> Result<(), InputError> {
         if let Table::Grouped(mut grouped) = self.table {
             grouped.finish().map_err(|error| of_file(&self.path, &error))?;
@@ -102,7 +102,7 @@ impl Sink {
     }
 }
 
-/// The file under its name while it grows, held by this process alone.
+/// The file under its temporary name, locked by this process.
 fn growing(path: &Path) -> Result<File, InputError> {
     let part = unfinished(path);
     let mut options = OpenOptions::new();

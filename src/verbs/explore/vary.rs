@@ -1,4 +1,4 @@
-//! `--vary`: which parameters vary, and between which values.
+//! `--vary`: the varied parameters and their bounds.
 
 use std::collections::BTreeSet;
 use std::str::FromStr;
@@ -12,7 +12,7 @@ use qcar_runtime::spelling;
 
 use crate::failure;
 
-/// `name=low..high`; the ends may have a unit after them, or be percents of the value.
+/// `name=low..high`; the bounds may have a unit or be in percent of the value.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Vary {
     name: String,
@@ -20,14 +20,14 @@ pub(super) struct Vary {
     unit: Unit,
 }
 
-/// What the ends are in.
+/// Unit of the bounds.
 #[derive(Clone, Debug, PartialEq)]
 enum Unit {
-    /// That of the parameter, SI.
+    /// The unit of the parameter, SI.
     Own,
-    /// Another of its kind, which is this one in SI.
+    /// Another unit of its kind, with its SI unit.
     Declared(String),
-    /// Percents by which the value changes.
+    /// Percent of the value.
     Percent,
 }
 
@@ -49,7 +49,7 @@ impl FromStr for Vary {
     }
 }
 
-/// Both ends in one unit: that of the upper end holds for a lower one without.
+/// Both bounds in one unit: a lower bound without a unit has that of the upper one.
 fn ends(low: &str, high: &str) -> Option<([f64; 2], Unit)> {
     let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
     if let Some(high) = high.strip_suffix('%') {
@@ -71,11 +71,11 @@ fn ends(low: &str, high: &str) -> Option<([f64; 2], Unit)> {
     Some(([low, high], Unit::Declared(unit.coherent)))
 }
 
-/// The axes of a model whose other parameters have these values.
+/// The axes of a design for a model with these values of the other parameters.
 ///
 /// # Errors
-/// Names that the model does not have or that come twice, parameters tied to others, units of another kind, and ends that are no
-/// range or lie outside of that of the model: all of them at once.
+/// Fails with all errors at once: names that the model lacks or that appear twice, tied parameters, units of another
+/// kind, and bounds that are no range or lie outside that of the model.
 pub(super) fn axes(about: &About, values: &Values, wanted: &[Vary]) -> Result<Vec<Axis>, InputError> {
     let mut seen = BTreeSet::new();
     let (mut axes, mut problems) = (Vec::new(), Vec::new());
@@ -89,13 +89,13 @@ pub(super) fn axes(about: &About, values: &Values, wanted: &[Vary]) -> Result<Ve
     InputError::unless_empty(problems, Some(axes))
 }
 
-/// Facts of the vehicle that make the tyre and its load.
+/// Vehicle data that determine the tyre and its load.
 const OF_TYRE: [&str; 3] = ["r_tire", "static_tire_def", "static_tire_load"];
 
-/// Refuses what the tyre of all sets is made of.
+/// Refuses to vary the data of the tyre, which all sets share.
 ///
 /// # Errors
-/// A fact of the vehicle that varies.
+/// Fails if such a datum varies.
 pub(super) fn refuse_facts(wanted: &[Vary]) -> Result<(), InputError> {
     match wanted.iter().find(|own| OF_TYRE.contains(&own.name.as_str())) {
         None => Ok(()),
@@ -122,12 +122,9 @@ fn axis(about: &About, values: &Values, own: &Vary) -> Result<Axis, Box<Problem>
     if *leader != parameter.name {
         let (found, remedy) = (
             format!("a parameter that takes its value from `{leader}`"),
-            format!(
-                "vary `{leader}`, or give it a value of its own with --set {}=…",
-                own.name
-            ),
+            format!("vary `{leader}`, or set its value with --set {}=…", own.name),
         );
-        return Err(wrong(own, &found, "a parameter with a value of its own", &remedy).into());
+        return Err(wrong(own, &found, "a parameter that is not tied to another", &remedy).into());
     }
     if let Unit::Declared(unit) = &own.unit
         && dimension(unit) != dimension(&parameter.unit)
@@ -166,7 +163,7 @@ fn check(own: &Vary, parameter: &Parameter, (low, high): (f64, f64)) -> Result<(
 }
 
 impl Vary {
-    /// In SI, about a value. Percents of a negative value change its size.
+    /// The bound in SI. Percents apply to the absolute value.
     fn range(&self, value: f64) -> (f64, f64) {
         let [low, high] = match self.unit {
             Unit::Percent => self.ends.map(|end| value * (100.0 + end) / 100.0),

@@ -1,4 +1,4 @@
-//! The tyre and the profile of a unit that rolls.
+//! The tyre and the road profile of an FMU that rolls.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -17,13 +17,14 @@ use crate::failure::{Failure, flag};
 use crate::parameters::Beside;
 use crate::roads::Asked;
 
-/// The most points of a profile, which become text of a C source.
+/// Most points of a profile, which become text of a C source.
 const POINTS: usize = 200_000;
 
-/// A model that stands before a road on the tyre of the vehicle in `params`, a campaign or parameter file.
+/// A model at rest before a road, on the tyre of the vehicle in `params` (a campaign or parameter file).
 ///
 /// # Errors
-/// A road that cannot be driven over, no vehicle, a model whose tyre does not roll, and no rest on the tyre.
+/// Fails if the road cannot be used, if there are no vehicle data, if the tyre of the model does not roll, or if the
+/// model has no equilibrium on the tyre.
 pub(super) fn on_tyre(
     asked: &Asked,
     (model, values): (&Loaded, &Values),
@@ -41,7 +42,7 @@ pub(super) fn on_tyre(
     };
     let rest = rest(&car, course.speed).map_err(|error| {
         let remedy = "correct the vehicle or the parameters";
-        flag("--road", error, "a car that stands on its tyre", remedy)
+        flag("--road", error, "a model in equilibrium on its tyre", remedy)
     })?;
     Ok(OnTyre {
         start: start(&road, &tyre),
@@ -72,11 +73,11 @@ fn vehicle((model, values): (&Loaded, &Values), params: Option<&Path>) -> Result
     tyre_of(&|name| own(name).or_else(|| facts.get(name).copied()), &shown)
 }
 
-/// What of the road the ride needs.
+/// The part of the road that the ride needs.
 fn profile(course: &Course) -> Result<Vec<[f64; 2]>, Failure> {
     let end = course.speed * course.samples as f64 / course.sample_rate;
     let points = course.road.vertices();
-    // One point further than the last that is met.
+    // One point beyond the last that is reached.
     let needed = points.partition_point(|[x, _]| *x <= end) + 1;
     let points = &points[..needed.min(points.len())];
     if points.len() > POINTS {
@@ -93,15 +94,15 @@ fn profile(course: &Course) -> Result<Vec<[f64; 2]>, Failure> {
     Ok(points.to_vec())
 }
 
-/// Above x = 0, or so far before it that the whole tyre stands on level ground.
+/// Start position: x = 0, or earlier if the whole tyre is not on level ground there.
 fn start(road: &[[f64; 2]], tyre: &Tyre) -> f64 {
     let uneven = road.windows(2).find(|two| two[0][1] != two[1][1]);
     uneven.map_or(0.0, |two| (two[0][0] - tyre.radius()).min(0.0))
 }
 
-/// The state in which it stands on level ground.
+/// The equilibrium on level ground.
 fn rest<M: Model + ?Sized>(car: &Car<'_, M>, speed: f64) -> Result<Vec<f64>, String> {
-    /// Samples while a point passes through the contact: a ride needs a few.
+    /// Samples while a point passes through the contact.
     const SAMPLES: f64 = 8.0;
     let level = Road::flat(0.0);
     let drive = Drive {

@@ -7,14 +7,14 @@ use super::Fitted;
 use crate::table::number;
 use crate::verbs::kc::{self, Gradient};
 
-/// How far another open parameter is moved to see whether a curve's answer stands on it.
+/// Relative change of another open parameter, to test whether the value from a curve depends on it.
 const DOUBT: f64 = 1.1;
 
-/// Gives the parameters that the fit left at their start values those with which the fitted model has the measured
-/// gradients, where these are within their ranges; else a notice says why not.
+/// Sets the parameters that the fit left at their start values to the values for which the fitted model has the
+/// measured gradients, if these are within their ranges. Otherwise a notice says why not.
 ///
 /// # Errors
-/// A curve without gradients.
+/// Fails if a curve has no gradient.
 pub(super) fn take_over(fitted: &mut Fitted) -> Result<(), InputError> {
     let open: Vec<String> = fitted
         .fit
@@ -69,7 +69,7 @@ fn adopt(fitted: &mut Fitted, gradient: &Gradient) -> Result<(), String> {
     Ok(())
 }
 
-/// The open parameters on whose start values the answer of a curve stands: moved, they move it by more than its error.
+/// The open parameters whose start values influence the result of a curve by more than its error.
 fn partners(fitted: &Fitted, gradient: &Gradient, value: f64) -> Vec<String> {
     let moves = |at: usize| {
         let (mut values, mut moved) = (fitted.values(), gradient.clone());

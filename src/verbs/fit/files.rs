@@ -16,10 +16,10 @@ use crate::figure::{Across, Curve, Figure, Panel, Style};
 use crate::files::put;
 use crate::units;
 
-/// Refuses a folder that holds what a fit of another model or campaign gave.
+/// Refuses a folder with the results of another model or campaign.
 ///
 /// # Errors
-/// Such results.
+/// Fails for such a folder.
 pub(crate) fn check_folder(folder: &Path, campaign: &str, model: &str) -> Result<(), InputError> {
     let file = folder.join("fit.json");
     let Ok(text) = std::fs::read_to_string(&file) else {
@@ -46,7 +46,7 @@ pub(crate) fn check_folder(folder: &Path, campaign: &str, model: &str) -> Result
 /// Writes values, curves and a figure.
 ///
 /// # Errors
-/// A folder that cannot be written to, and as [`check_folder`].
+/// Fails if the folder cannot be written to, and as [`check_folder`] does.
 pub(crate) fn write(of: &Fitted, folder: &Path) -> Result<(), InputError> {
     check_folder(folder, &of.campaign.name, &of.fit.model)?;
     let compared = compare(of);
@@ -60,7 +60,7 @@ pub(crate) fn write(of: &Fitted, folder: &Path) -> Result<(), InputError> {
     put(folder, "transmissibility.svg", &figure(of, &compared).svg())
 }
 
-/// A parameter file as `--params` takes it.
+/// A parameter file for `--params`.
 pub(super) fn parameters(model: &str, campaign: &str, of: &[ParameterFit]) -> String {
     let mut out = format!("# {model} fitted to {campaign}\n\n[parameters]\n");
     for parameter in of.iter().filter(|parameter| parameter.tied_to.is_none()) {
@@ -76,11 +76,11 @@ pub(super) fn parameters(model: &str, campaign: &str, of: &[ParameterFit]) -> St
     out
 }
 
-/// A measured ratio with the model's before and after the fit, line by line.
+/// A measured ratio with those of the model before and after the fit, line by line.
 pub(crate) struct Compared<'a> {
-    /// Its run.
+    /// The run.
     pub level: &'a Level,
-    /// What was measured.
+    /// Measured ratio.
     pub observation: &'a Observation,
     /// The model at the start values.
     pub before: Vec<Complex<f64>>,
@@ -88,7 +88,7 @@ pub(crate) struct Compared<'a> {
     pub after: Vec<Complex<f64>>,
 }
 
-/// Every measured ratio with the model's.
+/// Every measured ratio with those of the model.
 pub(crate) fn compare(of: &Fitted) -> Vec<Compared<'_>> {
     let (before, after) = (of.start(), of.values());
     let modelled = |level: &Level, observation: &Observation, values: &Values| {

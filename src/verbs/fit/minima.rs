@@ -5,18 +5,18 @@ use qcar_runtime::fit::report::ParameterFit;
 use crate::table::{Table, number};
 use crate::units;
 
-/// Minima beside the result that are printed; JSON has all.
+/// Number of other minima in the text output; JSON has all.
 const SHOWN: usize = 4;
 
 /// A minimum that is not the result.
 pub(super) struct Other {
-    /// How good it is, below a heading of [`text`].
+    /// Measures of its quality, under the headings of [`text`].
     pub figures: Vec<String>,
-    /// Fitted parameters there, SI; empty where a model has none of that name.
+    /// Fitted parameters, SI; `None` for a name that the model lacks.
     pub values: Vec<Option<f64>>,
 }
 
-/// A row for each figure of the minima, then one for each fitted parameter; nothing if there is only one minimum.
+/// A row for each measure of the minima, then one for each fitted parameter; empty if there is only one minimum.
 ///
 /// The values of an [`Other`] are in the order of the fitted ones of `parameters`.
 pub(super) fn text(figures: &[(&str, String)], parameters: &[ParameterFit], others: &[Other]) -> String {

@@ -1,6 +1,6 @@
-//! The fit of a nonlinear model: to all runs of a campaign, each level as it was driven.
+//! The fit of a nonlinear model to all runs of a campaign, each at its own level.
 //!
-//! The residuals are those of discovery, over their uncertainty, and so are the errors of sensors that go with them.
+//! The residuals and the sensor errors are those of discovery.
 
 // Its result as text and JSON.
 mod shown;
@@ -11,16 +11,16 @@ use std::time::Instant;
 
 use qcar_runtime::campaign::Campaign;
 use qcar_runtime::discover::Evidence;
-use qcar_runtime::discover::answer::News;
+use qcar_runtime::discover::answer::Update;
 use qcar_runtime::discover::candidate::Workshop;
 use qcar_runtime::discover::posterior::{Explanation, Refit, Setting};
-use qcar_runtime::discover::select::{self, Alone};
+use qcar_runtime::discover::select::{self, MultiStart};
 use qcar_runtime::error::InputError;
 use qcar_runtime::fit::profile::ParameterProfile;
 use qcar_runtime::fit::report::{Bound, NoError, ParameterFit};
 use qcar_runtime::least_squares::information::Unseen;
 use qcar_runtime::model::{About, Model};
-use qcar_runtime::progress::{self, Told};
+use qcar_runtime::progress::{self, OnProgress};
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::spelling;
 
@@ -32,7 +32,7 @@ use crate::terminal::prose;
 use crate::verbs::Format;
 use crate::workshop::{Bench, given};
 
-/// A nonlinear model that was fitted to a campaign.
+/// Result of the fit of a nonlinear model.
 pub(crate) struct Nonlinear {
     pub(crate) campaign: Campaign,
     bench: Bench,
@@ -40,12 +40,12 @@ pub(crate) struct Nonlinear {
     pub(crate) evidence: Evidence,
     pub(crate) parameters: Vec<ParameterFit>,
     starts: usize,
-    pub(crate) found: Alone,
+    pub(crate) found: MultiStart,
     profiles: Vec<ParameterProfile>,
     seconds: f64,
 }
 
-/// Does it.
+/// Runs the verb.
 pub(super) fn run(campaign: Campaign, arguments: &Arguments) -> Result<String, Failure> {
     refuse_choices(&arguments.choices)?;
     let fitted = fit(campaign, &arguments.choices)?;
@@ -64,7 +64,7 @@ pub(super) fn run(campaign: Campaign, arguments: &Arguments) -> Result<String, F
 }
 
 /// # Errors
-/// Channels, which the cost of a linear fit is made of, and their resamples.
+/// Fails if channels or resamples are requested, which only the cost of a linear fit has.
 fn refuse_choices(choices: &Choices) -> Result<(), InputError> {
     let expected = "a linear model, whose cost consists of channels";
     let remedy = "leave it out: a nonlinear model is fitted to all sensors";
@@ -78,10 +78,10 @@ fn refuse_choices(choices: &Choices) -> Result<(), InputError> {
     InputError::unless_empty(channels.into_iter().chain(resamples).collect(), Some(()))
 }
 
-/// Fits.
+/// Fits the model.
 ///
 /// # Errors
-/// What cannot be read, and a model that says nothing of the runs.
+/// Fails if something cannot be read, or if the campaign has no data for the model.
 pub(crate) fn fit(mut campaign: Campaign, choices: &Choices) -> Result<Nonlinear, Failure> {
     let begun = Instant::now();
     let bench = Bench::of_campaign(&campaign, choices.model.as_deref())?;
@@ -90,14 +90,14 @@ pub(crate) fn fit(mut campaign: Campaign, choices: &Choices) -> Result<Nonlinear
     let setting = given(&plan.parameters, &campaign);
     check_profiled(&setting, &about, &choices.profile)?;
     let showing = Showing::new();
-    showing.tell(format!("{}: reading", campaign.name));
+    showing.step(format!("{}: reading", campaign.name));
     let evidence = Evidence::from_campaign(&campaign, &about)?;
-    let told = |news: News<'_>| {
-        if let News::Doing(what) = news {
-            showing.tell(format!("{}: {what}", campaign.name));
+    let on_update = |update: Update<'_>| {
+        if let Update::Step(what) = update {
+            showing.step(format!("{}: {what}", campaign.name));
         }
     };
-    let found = select::alone(Box::new(bench.clone()), &setting, &evidence, plan.starts, &told);
+    let found = select::fit_from_starts(Box::new(bench.clone()), &setting, &evidence, plan.starts, &on_update);
     drop(showing);
     let found = found.map_err(|error| Failure::Input(format!("{}: {error}\n", campaign.manifest().display())))?;
     campaign.notices.extend(evidence.notices.iter().cloned());
@@ -116,7 +116,7 @@ pub(crate) fn fit(mut campaign: Campaign, choices: &Choices) -> Result<Nonlinear
 }
 
 /// # Errors
-/// Every name of a parameter that is not fitted.
+/// Fails if a name is not that of a fitted parameter.
 fn check_profiled(setting: &Setting, about: &About, names: &[String]) -> Result<(), InputError> {
     let of_model = |name: &str| about.parameters.iter().any(|own| own.name == name);
     let fitted = || {
@@ -141,7 +141,7 @@ fn check_profiled(setting: &Setting, about: &About, names: &[String]) -> Result<
     InputError::unless_empty(unknown.map(problem).collect(), Some(()))
 }
 
-/// Profiles of the parameters that are asked for.
+/// Profiles of the requested parameters.
 fn profiles(model: &dyn Model, refit: &Refit, evidence: &Evidence, names: &[String]) -> Vec<ParameterProfile> {
     let parameters = &model.about().parameters;
     let is_asked = |k: &usize| {
@@ -153,11 +153,11 @@ fn profiles(model: &dyn Model, refit: &Refit, evidence: &Evidence, names: &[Stri
         return Vec::new();
     }
     let fitted = refit.fitted_of(evidence);
-    let all = |told: Told<'_>| progress::map(&wanted, told, |&k| refit.profile(model, &fitted, k));
+    let all = |on_progress: OnProgress<'_>| progress::map(&wanted, on_progress, |&k| refit.profile(model, &fitted, k));
     while_counting("profile".into(), all)
 }
 
-/// In place of all names.
+/// The word for all names.
 const ALL: &str = "all";
 
 fn parameters(about: &About, setting: &Setting, of: &Explanation) -> Vec<ParameterFit> {
@@ -174,7 +174,8 @@ fn parameters(about: &About, setting: &Setting, of: &Explanation) -> Vec<Paramet
             side if side < 0 => Some(Bound::Lower),
             _ => Some(Bound::Upper),
         });
-        // What is not known better than that it lies evenly in its range is not seen.
+        // A parameter that the data determine no better than a uniform distribution over its range counts as
+        // undetermined.
         let width = |free: usize| (refit.free[free].upper - refit.free[free].lower) / 12.0_f64.sqrt();
         let error = free.filter(|&free| errors[free] < width(free)).map(|free| errors[free]);
         let why = match (free, at_bound) {
@@ -204,7 +205,7 @@ fn parameters(about: &About, setting: &Setting, of: &Explanation) -> Vec<Paramet
     about.parameters.iter().enumerate().map(parameter).collect()
 }
 
-/// Why a parameter that was fitted, and is off its bounds, has no standard error.
+/// Why a fitted parameter inside its bounds has no standard error.
 fn why_unseen(about: &About, refit: &Refit, free: usize) -> NoError {
     match &refit.unseen[free] {
         Some(Unseen::Combination { with }) if !with.is_empty() => {
@@ -218,15 +219,15 @@ fn why_unseen(about: &About, refit: &Refit, free: usize) -> NoError {
 }
 
 impl Nonlinear {
-    /// What was fitted.
+    /// The fitted model.
     pub(crate) fn bench(&self) -> &Bench {
         &self.bench
     }
 
-    /// Writes values and the answer.
+    /// Writes the parameters and the result.
     ///
     /// # Errors
-    /// A folder that cannot be written to.
+    /// Fails if the folder cannot be written to.
     fn write(&self, folder: &Path) -> Result<(), InputError> {
         let values = files::parameters(&self.model, &self.campaign.name, &self.parameters);
         put(folder, "parameters.toml", &values)?;

@@ -1,9 +1,9 @@
-//! Oddities of a fit that are no errors.
+//! Notices on a fit.
 
 use qcar_runtime::campaign::{Campaign, Role, Run, Test};
 use qcar_runtime::fit::{Fit, Level};
 
-/// A sentence where every parameter that was fitted rests on a bound: no minimum of the cost lies within the ranges.
+/// A sentence if every fitted parameter is at a bound, so that the cost has no minimum within the ranges.
 pub(super) fn all_at_bounds(fit: &Fit) -> Option<String> {
     let fitted: Vec<_> = fit.parameters.iter().filter(|own| own.fitted).collect();
     let at_bounds = !fitted.is_empty() && fitted.iter().all(|own| own.at_bound.is_some());
@@ -17,7 +17,7 @@ pub(super) fn all_at_bounds(fit: &Fit) -> Option<String> {
     })
 }
 
-/// A sentence for each run that records what drives the model and nothing that moves.
+/// A sentence for each run with a recorded excitation and no response.
 pub(super) fn silent_runs(campaign: &Campaign, levels: &[Level]) -> Vec<String> {
     let silent = levels.iter().filter(|level| level.observations.is_empty());
     let say = |level: &Level| {
@@ -28,7 +28,7 @@ pub(super) fn silent_runs(campaign: &Campaign, levels: &[Level]) -> Vec<String> 
     silent.map(say).collect()
 }
 
-/// A sentence for each table of a dynamometer, which the cost of a linear fit does not hold.
+/// A sentence for each table of a dynamometer, which a linear fit does not use.
 pub(super) fn unused_tables(campaign: &Campaign) -> Vec<String> {
     let is_unused = |run: &&Run| run.role == Role::Fit && matches!(run.test, Test::Dynamometer(_));
     let say = |run: &Run| {

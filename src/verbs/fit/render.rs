@@ -1,4 +1,4 @@
-//! A fit as text for people and as JSON for programs.
+//! A fit as text and as JSON.
 
 use qcar_runtime::fit::Fit;
 use qcar_runtime::fit::bootstrap::Bootstrap;
@@ -112,7 +112,7 @@ pub(super) fn parameters(of: &[ParameterFit]) -> String {
     table.text() + &how_to_distinguish(of)
 }
 
-/// The verb that finds what would tell parameters apart which the runs see only together.
+/// Refers to the verb that finds measurements to separate parameters which the runs determine only in combination.
 fn how_to_distinguish(of: &[ParameterFit]) -> String {
     let is_one = |own: &&ParameterFit| matches!(own.why_no_stderr, Some(NoError::OnlyTogether { .. }));
     let names: Vec<&str> = of.iter().filter(is_one).map(|own| &*own.name).collect();

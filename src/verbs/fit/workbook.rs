@@ -18,17 +18,17 @@ pub(crate) const FILE: &str = "results.xlsx";
 
 /// The sheet of the transmissibilities.
 const RATIOS: &str = "Transmissibilities";
-/// Who says so, in the order of the columns.
+/// Source of each curve, in the order of the columns.
 const SOURCES: [&str; 3] = ["measured", "before", "after"];
-/// The first column of magnitudes; those of phases follow.
+/// First column of the magnitudes; the phases follow.
 const MAGNITUDES: u16 = 3;
-/// Charts beside each other, and the rows and columns from one to the next.
+/// Number of charts side by side, and rows and columns between them.
 const CHARTS: (usize, u32, u16) = (2, 16, 8);
 
-/// Writes it into a folder.
+/// Writes the workbook into a folder.
 ///
 /// # Errors
-/// A folder that cannot be written to.
+/// Fails if the folder cannot be written to.
 pub(super) fn write(of: &Fitted, folder: &Path) -> Result<(), InputError> {
     let bytes = filled(&folder.join(FILE), |workbook| sheets(workbook, of))?;
     put(folder, FILE, &bytes)
@@ -104,7 +104,7 @@ fn channels(workbook: &mut Workbook, of: &Fitted) -> Result<(), XlsxError> {
     .map(drop)
 }
 
-/// All ratios below each other, and beside them a chart of each.
+/// All ratios in rows, with a chart of each at the side.
 fn ratios(workbook: &mut Workbook, all: &[Compared]) -> Result<(), XlsxError> {
     let of_all = |unit: &'static str| SOURCES.map(|source| format!("{source} [{unit}]"));
     let headings = [

@@ -1,4 +1,4 @@
-//! Which sensor a channel is, by the words of its name and by its unit.
+//! The sensor of a channel, from the words of its name and its unit.
 
 use qcar_runtime::campaign::{Axis, Quantity, RoleNames};
 use qcar_runtime::model::{About, StateKind};
@@ -78,29 +78,29 @@ const QUANTITIES: &[(&[&str], Quantity)] = &[
     (&["force", "load", "f", "kraft"], Quantity::Force),
 ];
 
-/// What a channel seems to be.
+/// Proposed sensor of a channel.
 #[derive(Clone, PartialEq)]
 pub(super) struct Guess {
     /// A road or a mass of the model.
     pub location: String,
-    /// Whether that is the model's road.
+    /// True if the place is the road of the model.
     pub drives: bool,
     pub side: &'static str,
     pub axis: Axis,
     pub quantity: Quantity,
-    /// Whether the file states a unit of the quantity.
+    /// True if the file states a unit of the quantity.
     pub has_unit: bool,
 }
 
 impl Guess {
-    /// The sensor, or why it is none that is known.
+    /// The sensor, or why no sensor is recognised.
     pub fn of(signal: &Signal, about: &About) -> Result<Guess, &'static str> {
         let words = words(&signal.full_name());
         let stated = quantity_of(&signal.unit);
         if stated.is_none() && !matches!(signal.unit.as_str(), "" | "-" | "1" | "V" | "mV") {
             return Err("its unit is not that of an acceleration, velocity, displacement or force");
         }
-        // Most sensors of a rig are accelerometers.
+        // Most sensors on a rig are accelerometers.
         let quantity = stated
             .or_else(|| meaning(&words, QUANTITIES))
             .unwrap_or(Quantity::Acceleration);
@@ -126,7 +126,7 @@ impl Guess {
     }
 }
 
-/// The quantity of a unit, where it is one of a sensor.
+/// The quantity of a unit; `None` if no sensor has it.
 pub(super) fn quantity_of(unit: &str) -> Option<Quantity> {
     let all = [
         Quantity::Acceleration,
@@ -139,7 +139,7 @@ pub(super) fn quantity_of(unit: &str) -> Option<Quantity> {
         .find(|own| in_si(own.unit()).is_some_and(|si| si.dimension == dimension))
 }
 
-/// A part of the model by its own name, else by what its place is called, and whether it is the road.
+/// A place of the model by its own name or by a common name, and whether it is the road.
 fn location(words: &[String], about: &About) -> Option<(String, bool)> {
     let roads = about.excitations.iter().map(|own| (&own.name, own.road));
     let masses = about.states.iter().filter(|state| state.kind == StateKind::Velocity);

@@ -1,4 +1,4 @@
-//! The sensors of the new campaign: each with the channel that it is in the files.
+//! The sensors of the new campaign, each with its channel in the files.
 
 use qcar_runtime::model::About;
 
@@ -9,20 +9,20 @@ use crate::table::Table;
 /// A sensor and its channel.
 pub(super) struct Sensor {
     pub guess: Guess,
-    /// The channel's name, with its group where a file has several of the name.
+    /// Name of the channel, with its group if a file has several of that name.
     pub source: String,
-    /// The unit in the file.
+    /// Unit in the file.
     pub unit: String,
 }
 
-/// What is proposed.
+/// The proposed sensors.
 pub(super) struct Sensors {
     pub known: Vec<Sensor>,
-    /// Channels that are none, and why.
+    /// Channels without a sensor, with reasons.
     pub others: Vec<(String, String)>,
 }
 
-/// The sensors in the order in which the files have their channels, each once.
+/// The sensors in the order of the channels in the files, without duplicates.
 pub(super) fn propose(files: &[Measured], about: &About) -> Sensors {
     let mut all = Sensors {
         known: Vec::new(),
@@ -109,7 +109,7 @@ fn section(sensor: &Sensor) -> String {
     )
 }
 
-/// Which channel is taken to be which sensor.
+/// The proposal as text: channels with their sensors.
 pub(super) fn table(sensors: &Sensors) -> String {
     let mut table = Table::new(["channel", "is", "unit"]);
     for sensor in &sensors.known {

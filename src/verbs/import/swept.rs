@@ -1,35 +1,35 @@
-//! What a sine sweep does, from the signal of its pad.
+//! Properties of a sine sweep from the signal of its pad.
 
 use std::ops::Range;
 
 use qcar_runtime::campaign::Quantity;
 
-/// A sine whose frequency rises, at a velocity that stays.
+/// A sine of rising frequency and constant peak velocity.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Swept {
-    /// m/s.
+    /// Peak velocity, m/s.
     pub peak_velocity: f64,
-    /// Hz.
+    /// First frequency, Hz.
     pub start: f64,
-    /// Hz.
+    /// Last frequency, Hz.
     pub end: f64,
     pub logarithmic: bool,
 }
 
-/// Half periods that a sweep has at least.
+/// Fewest half periods of a sweep.
 const LEAST: usize = 20;
-/// A sweep rises at least to so many times its first frequency.
+/// Smallest ratio of the last to the first frequency.
 const RISE: f64 = 2.0;
-/// The largest relative deviation of its half periods from a line, or from one of logarithms, as a root mean square.
+/// Largest relative RMS deviation of the half periods from a linear or a logarithmic sweep.
 const STRAIGHT: f64 = 0.1;
-/// A value is written with the fewest digits that change it by less than this share.
+/// Values are rounded to the fewest digits that change them by less than this share.
 const ROUNDING: f64 = 0.05;
 
-/// How far the velocity of a half period may be from the usual one, as a share of it.
+/// Largest relative deviation of the velocity of a half period from the median.
 const FULL: f64 = 0.2;
-/// Part of the RMS value of the velocity that a swing has.
+/// Share of the RMS velocity that a swing must have.
 const SWING: f64 = 0.5;
-/// What fades out of an integral, 1/s: a tenth of a hertz.
+/// Cut-off frequency of the integration, 1/s: a tenth of a hertz.
 const SLOW: f64 = 0.6;
 
 /// A half period: its middle (s), its frequency (Hz) and the peak of the velocity in it (m/s).
@@ -39,16 +39,17 @@ struct Half {
     velocity: f64,
 }
 
-/// Length of record that decides together whether the pad rests, s.
+/// Length of the blocks that are tested for rest, s.
 const BLOCK: f64 = 0.5;
-/// A pad rests where its velocity swings by less than this share of its largest swing. Where it stands says nothing: an integrated
+/// A pad is at rest if its velocity range is below this share of the largest. Its position is not used: an integrated
 /// acceleration takes seconds to return to zero.
 const REST: f64 = 0.1;
-/// Whole blocks that a rest between two parts of a record has at least: a rest of 1.5 s has them wherever it begins, one of less than
-/// 1 s nowhere.
+/// Fewest complete blocks of a rest between two parts of a record: a rest of 1.5 s always has as many, one of less than
+/// 1 s never.
 const REST_BLOCKS: usize = 2;
 
-/// The parts of a record in which the pad moves, each with the rest around it up to a block, or all of it where there is no rest.
+/// The parts of a record in which the pad moves, each with up to one block of the rest around it; the whole record
+/// without a rest.
 pub(super) fn parts(samples: &[f64], rate: f64, quantity: Quantity) -> Vec<Range<usize>> {
     let length = ((BLOCK * rate) as usize).min(samples.len()).max(1);
     let velocity = velocity(samples, rate, quantity);
@@ -70,13 +71,13 @@ pub(super) fn parts(samples: &[f64], rate: f64, quantity: Quantity) -> Vec<Range
     parts.map(around).collect()
 }
 
-/// What the samples of a pad sweep over, if they do.
+/// The sweep of a pad; `None` if its motion is no sweep.
 pub(super) fn swept(samples: &[f64], rate: f64, quantity: Quantity) -> Option<Swept> {
     let mut halves = halves(samples, rate, quantity);
     let mut velocities: Vec<f64> = halves.iter().map(|half| half.velocity).collect();
     velocities.sort_by(f64::total_cmp);
     let usual = *velocities.get(velocities.len() / 2)?;
-    // A sweep fades in and out.
+    // The ends of a sweep are faded.
     halves.retain(|half| (half.velocity / usual - 1.0).abs() < FULL);
     if halves.len() < LEAST {
         return None;
@@ -96,7 +97,7 @@ pub(super) fn swept(samples: &[f64], rate: f64, quantity: Quantity) -> Option<Sw
     })
 }
 
-/// How the frequency grows: it, or its logarithm, on a line over time.
+/// Growth of the frequency: linear or logarithmic in time.
 struct Law {
     slope: f64,
     offset: f64,
@@ -104,7 +105,7 @@ struct Law {
 }
 
 impl Law {
-    /// The line of least squares, every second of the sweep counting alike.
+    /// Least-squares line; every second of the sweep has the same weight.
     fn through(halves: &[Half], logarithmic: bool) -> Law {
         let scaled = |half: &Half| {
             if logarithmic {
@@ -134,7 +135,7 @@ impl Law {
         if self.logarithmic { value.exp() } else { value }
     }
 
-    /// Root mean square of the relative deviations.
+    /// RMS of the relative deviations.
     fn error(&self, halves: &[Half]) -> f64 {
         let square: f64 = halves
             .iter()
@@ -144,7 +145,7 @@ impl Law {
     }
 }
 
-/// What lies between zeros of the velocity.
+/// The part between zeros of the velocity.
 fn halves(samples: &[f64], rate: f64, quantity: Quantity) -> Vec<Half> {
     let velocity = velocity(samples, rate, quantity);
     let zeros = zeros(&velocity);
@@ -160,8 +161,8 @@ fn halves(samples: &[f64], rate: f64, quantity: Quantity) -> Vec<Half> {
     whole.map(half).collect()
 }
 
-/// The velocity of the pad, m/s, whose amplitude stays in a sweep. What is slower than a tenth of a hertz is left out of it, so that
-/// an offset of the sensor does not run away.
+/// Velocity of the pad, m/s; its amplitude is constant in a sweep. Frequencies below a tenth of a hertz are removed, so
+/// that an offset of the sensor does not grow.
 fn velocity(samples: &[f64], rate: f64, quantity: Quantity) -> Vec<f64> {
     let fading = 1.0 - SLOW / rate;
     let mut last = 0.0;
@@ -176,7 +177,7 @@ fn velocity(samples: &[f64], rate: f64, quantity: Quantity) -> Vec<f64> {
     }
 }
 
-/// Places between samples where the signal goes through zero, from one swing to the next. What is small is noise and no swing.
+/// Zero crossings between samples, from one swing to the next. Small swings are noise and are left out.
 fn zeros(velocity: &[f64]) -> Vec<f64> {
     let square = velocity.iter().map(|value| value * value).sum::<f64>() / velocity.len().max(1) as f64;
     let swing = SWING * square.sqrt();
@@ -193,7 +194,7 @@ fn zeros(velocity: &[f64]) -> Vec<f64> {
     zeros
 }
 
-/// The nearest value of the fewest digits.
+/// The nearest value with the fewest digits.
 fn rounded(value: f64) -> f64 {
     let with = |digits: usize| format!("{value:.digits$e}").parse().unwrap_or(value);
     (0..3)

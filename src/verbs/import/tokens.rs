@@ -1,7 +1,7 @@
-//! The parts of a channel's name: `FL_Body_Acc_Z`, `bodyAccZ_left` and `Beschl. Aufbau VL z` have the same parts in their languages.
+//! Words of a channel name: `FL_Body_Acc_Z`, `bodyAccZ_left` and `Beschl. Aufbau VL z` have the same meaning.
 
-/// The words of a name in lower case: separated by anything but letters and digits, and where a small letter or a digit is followed
-/// by a capital one.
+/// The words of a name in lower case. They are separated by any other character than letters and digits, and before a
+/// capital letter after a small letter or digit.
 pub(super) fn words(name: &str) -> Vec<String> {
     let (mut words, mut before) = (vec![String::new()], None);
     for c in name.chars() {

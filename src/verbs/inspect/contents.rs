@@ -18,9 +18,9 @@ use crate::failure::Failure;
 /// gone through once for each such part of it.
 const AT_ONCE: u64 = 128 << 20;
 
-/// What is in a file, without the samples, and what was found in those.
+/// Contents of a file without samples, and the findings in the samples.
 pub(in crate::verbs) struct Contents<T> {
-    /// Its signals have no samples and no times any more.
+    /// The recording, without samples and times of its signals.
     pub recording: Recording,
     found: Vec<(Course, Option<T>)>,
 }
@@ -127,7 +127,7 @@ impl<T> Contents<T> {
         Contents { recording, found }
     }
 
-    /// The channels, each with its course.
+    /// The channels, each with its summary.
     pub fn channels(&self) -> impl Iterator<Item = (&Signal, &Course)> {
         let found = self.found.iter().map(|(course, _)| course);
         self.recording.signals.iter().zip(found)
@@ -156,7 +156,7 @@ impl<T> Contents<T> {
     }
 }
 
-/// For each channel the patterns that mean it and, where it is an array of MATLAB that was not taken apart, its columns and rows.
+/// For each channel the patterns that select it and, for an array of MATLAB that was not split, its columns and rows.
 fn patterns(listed: &[Signal]) -> Vec<[String; 2]> {
     let mut left: BTreeSet<String> = listed.iter().map(Signal::full_name).collect();
     let distinct = listed.iter().map(Signal::full_name).filter(|name| left.remove(name));
@@ -189,11 +189,11 @@ fn given_back(signal: &mut Signal) -> Course {
 mod tests {
     use std::path::Path;
 
-    use super::{AT_ONCE, Contents, Look, Signal};
+    use super::{AT_ONCE, Contents, Look};
 
-    /// One channel or two at a time, of every format that may be long.
+    /// One or two channels at a time, for every format with long files.
     #[test]
-    fn a_file_in_parts_is_told_as_the_whole() {
+    fn a_file_in_parts_gives_the_same_summary() {
         for name in [
             "mdf/plain_3groups.mf4",
             "mdf/special_text_invalid_bits.mf4",
@@ -210,7 +210,7 @@ mod tests {
             "table/rig_units_row_bom_crlf.csv",
         ] {
             let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("qcar-signals/tests/samples");
-            let told = |at_once: u64| {
+            let summary = |at_once: u64| {
                 let bits = Look {
                     is_in: &|_| true,
                     take: &|signal| Some(signal.samples.iter().map(f64::to_bits).collect()),
@@ -236,7 +236,7 @@ mod tests {
                 let found: Vec<_> = found.collect();
                 (format!("{:?}", contents.recording), found)
             };
-            let (whole, parts) = (told(AT_ONCE), told(1));
+            let (whole, parts) = (summary(AT_ONCE), summary(1));
             assert_eq!(parts.0, whole.0, "{name}");
             assert_eq!(parts.1, whole.1, "{name}");
         }

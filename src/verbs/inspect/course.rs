@@ -1,4 +1,4 @@
-//! What is told of a channel when its samples are gone.
+//! Summary of a channel without its samples.
 
 use qcar_signals::signal::Signal;
 use qcar_signals::summary::Summary;
@@ -7,26 +7,26 @@ use crate::doubt::{Does, doubt};
 
 /// The range and the course of a channel, in its unit.
 pub(in crate::verbs) struct Course {
-    /// How many there are, those without a value among them.
+    /// Number of samples, including those without a value.
     pub samples: usize,
-    /// How many have no value.
+    /// Number of samples without a value.
     pub missing: usize,
-    /// Hz, where they come evenly.
+    /// Sample rate, Hz; `None` if the samples are not evenly spaced.
     pub rate: Option<f64>,
-    /// Time of the first sample, s, where the file says times.
+    /// Time of the first sample, s; `None` without times.
     pub start: Option<f64>,
     pub min: Option<f64>,
     pub max: Option<f64>,
     pub mean: Option<f64>,
     pub rms: Option<f64>,
-    /// A few characters, from the lowest to the highest.
+    /// Sparkline of a few characters, from the lowest to the highest value.
     pub sparkline: String,
-    /// What is odd about its unit, as a sentence.
+    /// Doubt about its unit, as a sentence.
     pub doubt: Option<String>,
 }
 
 impl Course {
-    /// Of a channel whose samples are there or were summarised.
+    /// Summary of a channel with samples.
     pub fn of(signal: &Signal) -> Self {
         let summary = signal.samples.summary();
         let mean = summary.mean();

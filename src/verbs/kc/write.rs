@@ -9,7 +9,7 @@ use toml::de::DeTable;
 use super::Gradient;
 use crate::files::{put, read_text};
 
-/// Replaces the value of each parameter that a gradient stands for and that the campaign has.
+/// Replaces the value of each parameter of the campaign that a gradient determines.
 pub(super) fn start_values(campaign: &Campaign, gradients: &[Gradient]) -> Result<(), InputError> {
     let file = campaign.manifest();
     let mut text = read_text(&file)?;
@@ -40,7 +40,7 @@ pub(super) fn start_values(campaign: &Campaign, gradients: &[Gradient]) -> Resul
     put(&campaign.folder, "campaign.toml", &text)
 }
 
-/// What stands in a workbook stays there.
+/// Values in a workbook stay unchanged.
 fn in_the_workbook(campaign: &Campaign, name: &str, value: f64) -> Problem {
     let unit = campaign.parameter(name).map_or("", |own| &own.unit);
     let remedy = format!("write {value} {unit} into its cell of the workbook, or add [parameters.{name}]");
@@ -55,7 +55,7 @@ fn in_the_workbook(campaign: &Campaign, name: &str, value: f64) -> Problem {
     )
 }
 
-/// Where the value of a parameter stands, and in which unit; nothing where the file does not state it.
+/// Position of a parameter value in the file, and its unit; `None` if the file does not state it.
 fn value_of(text: &str, name: &str) -> Option<(Range<usize>, Option<Declared>)> {
     let table = DeTable::parse(text).expect("the campaign was read from this text");
     let parameter = table

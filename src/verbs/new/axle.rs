@@ -8,7 +8,7 @@ use super::{Named, must_be_new};
 use crate::failure::{Failure, flag};
 use crate::files::put;
 
-/// What stands in both templates for the name.
+/// Placeholder for the name in both templates.
 const PLACEHOLDER: &str = "NAME";
 
 /// Write a model file that compiles, and a parameter file beside it
@@ -40,7 +40,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<String, Failure> {
     ))
 }
 
-/// Nothing but the name can make the compiler refuse the template.
+/// A template compiles, so only the name can cause an error.
 fn refuse_words_of_the_language(name: &str, model: &str) -> Result<(), Failure> {
     let source = Source {
         name: format!("{name}.axle"),

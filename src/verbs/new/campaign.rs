@@ -16,7 +16,7 @@ use crate::failure::Failure;
 use crate::files::put;
 use crate::table::number;
 
-/// Where the measured files go.
+/// Folder for the measured files.
 const PARTS: [&str; 4] = ["rig", "kc", "cleat", "road"];
 
 /// Write a folder with a campaign.toml for a model, which says where to put each measured file
@@ -65,8 +65,8 @@ fn make(folder: &Path) -> Result<(), InputError> {
     })
 }
 
-/// A model or a file as the campaign must name it: a path is relative to the folder of the campaign, not to where one stands.
-/// What is `shipped` has a name and no path.
+/// A model or a file as the campaign must give it: a path relative to the folder of the campaign. A `shipped` model has
+/// a name and no path.
 pub(in crate::verbs) fn seen_from(folder: &Path, named: &str, shipped: bool) -> String {
     let path = Path::new(named);
     if shipped || path.is_absolute() {
@@ -77,7 +77,7 @@ pub(in crate::verbs) fn seen_from(folder: &Path, named: &str, shipped: bool) -> 
         match part {
             Component::CurDir => {}
             Component::Normal(_) => upwards.push(".."),
-            // Where `..` leads cannot be told from the names alone.
+            // The target of `..` cannot be determined from the names alone.
             _ => return std::path::absolute(path).unwrap_or(path.into()).display().to_string(),
         }
     }
@@ -99,7 +99,7 @@ fn manifest(name: &str, model: &str, about: &About) -> String {
     out
 }
 
-/// What a campaign.toml begins with: the model, what is known before any fit, and start values.
+/// First part of a campaign.toml: the model, known values, and start values.
 pub(in crate::verbs) fn make_head(name: &str, model: &str, about: &About) -> String {
     let (known, estimated): (Vec<&Parameter>, _) = about
         .parameters
@@ -120,7 +120,7 @@ pub(in crate::verbs) fn make_head(name: &str, model: &str, about: &About) -> Str
     out
 }
 
-/// What the tyre needs beside the parameters of any model.
+/// Vehicle data of the tyre, which no model has as parameters.
 const ROLLING: &str = "# For `qcar simulate`, the tyre under its static load:\n\
     # r_tire = 0.33 # m\n# static_tire_load = 3924.0 # N\n# static_tire_def = 0.02 # m\n";
 
@@ -166,7 +166,7 @@ sample_rate = 1000.0
 # file = \"road/cleat_20.csv\"
 ";
 
-/// A value to begin with, and what it is.
+/// A start value with its description.
 fn guess(of: &Parameter) -> (Option<f64>, &'static str) {
     match (of.default, of.range) {
         (Default::Value(value), _) => (Some(value), ""),
@@ -176,12 +176,12 @@ fn guess(of: &Parameter) -> (Option<f64>, &'static str) {
     }
 }
 
-/// `key = value`, after a `#` where there is no value, so that the campaign is refused until someone gives it.
+/// `key = value`; commented out without a value, so that the campaign is refused until it is given.
 fn line(key: &str, value: Option<f64>) -> String {
     value.map_or(format!("# {key} ="), |value| format!("{key} = {}", number(value, 3)))
 }
 
-/// A known parameter gets only the model's own value, because a guess would count as known.
+/// A known parameter gets only the default of the model, because a guess would count as known.
 fn of_vehicle(of: &Parameter) -> String {
     let value = match of.default {
         Default::Value(value) => Some(value),
@@ -230,7 +230,7 @@ impl Sensor<'_> {
     }
 }
 
-/// One on each side for every pad and every mass along the direction of the pads.
+/// One sensor on each side for every pad and every mass along the direction of the pads.
 fn sensors(about: &About) -> Vec<Sensor<'_>> {
     let roads = about.excitations.iter().filter(|excitation| excitation.road);
     let roads: Vec<(&str, &str)> = roads.map(|road| (&*road.name, &*road.axis)).collect();

@@ -72,7 +72,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<String, Failure> {
     ))
 }
 
-/// The shipped models that stand for a corner of a car.
+/// The shipped models of a corner of a car.
 fn corners() -> Result<Vec<catalogue::Loaded>, Failure> {
     let mut found = Vec::new();
     for name in catalogue::names() {

@@ -180,7 +180,7 @@ pub(crate) fn parameter(
             let found = format!("`{name}`, which takes the value of `{leader}`");
             Err(problem(
                 &found,
-                "a parameter with a value of its own",
+                "a parameter that is not tied to another",
                 &format!("name `{leader}`, or give `{name}` a value"),
             )
             .into())

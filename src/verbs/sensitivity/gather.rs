@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use qcar_runtime::metric::{Ground, MetricError, Reading};
-use qcar_runtime::progress::Told;
+use qcar_runtime::progress::OnProgress;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::sensitivity::{
     Doubt, Elasticities, Index, Indices, Interval, Plan, Source, elasticities, indices, size,
@@ -109,7 +109,7 @@ pub(crate) fn gather(
     subject: &Subject,
     ground: &mut Ground<'_>,
     asked: &Asked<'_>,
-    told: Told<'_>,
+    on_progress: OnProgress<'_>,
 ) -> Result<Sensitivity, MetricError> {
     let groups: Vec<Vec<Reading>> = asked.metrics.iter().map(|&metric| ground.readings_of(metric)).collect();
     let sizes: Vec<usize> = groups.iter().map(Vec::len).collect();
@@ -149,7 +149,7 @@ pub(crate) fn gather(
             let own = measured.map(|values| Some(means(&values.ok()?, &local.values, &sizes)));
             own.collect::<Vec<_>>()
         };
-        let own = drawn(subject, asked, (plan, spread), told, relative);
+        let own = drawn(subject, asked, (plan, spread), on_progress, relative);
         add(&mut found, &own, spread);
     }
     Ok(found)
@@ -240,7 +240,7 @@ fn drawn(
     subject: &Subject,
     asked: &Asked<'_>,
     (plan, spread): (Plan, f64),
-    told: Told<'_>,
+    on_progress: OnProgress<'_>,
     relative: impl Fn(&[Values]) -> Vec<Option<Vec<f64>>> + Sync + Send,
 ) -> Indices {
     let design = |u: &Vec<f64>| {
@@ -251,7 +251,7 @@ fn drawn(
         }
         values
     };
-    indices(asked.parameters.len(), plan, told, |designs| {
+    indices(asked.parameters.len(), plan, on_progress, |designs| {
         relative(&designs.iter().map(design).collect::<Vec<_>>())
     })
 }

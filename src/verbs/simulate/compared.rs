@@ -1,4 +1,4 @@
-//! Simulated records beside measured ones: every mass and axis that both have.
+//! Simulated and measured records of every common mass and axis.
 
 use std::collections::BTreeMap;
 
@@ -10,48 +10,48 @@ use qcar_runtime::roles::Roles;
 use qcar_runtime::simulate::{Cleat, Ride};
 use serde::Serialize;
 
-/// All runs, and the size of their errors.
+/// All runs and their errors.
 #[derive(Debug, Serialize)]
 pub struct Compared {
-    /// One for each run, mass and axis.
+    /// One entry for each run, mass and axis.
     pub runs: Vec<Difference>,
-    /// Over all runs, by `mass_axis`.
+    /// Errors over all runs, by `mass_axis`.
     pub summary: BTreeMap<String, Sizes>,
-    /// What was measured and is not compared, as sentences.
+    /// Measured signals that are not compared, as sentences.
     pub notices: Vec<String>,
 }
 
 /// A mass along an axis in a run.
 #[derive(Debug, Serialize)]
 pub struct Difference {
-    /// The file of the run.
+    /// File of the run.
     pub run: String,
-    /// `fit` or `held_out`.
+    /// Role: `fit` or `held_out`.
     pub role: &'static str,
     /// The mass.
     pub mass: String,
-    /// `z` or `x`.
+    /// Axis: `z` or `x`.
     pub axis: &'static str,
-    /// Largest acceleration in the impact, m/s².
+    /// Largest measured acceleration during the impact, m/s².
     pub measured_peak: f64,
-    /// The same of the simulation.
+    /// Largest simulated acceleration, m/s².
     pub simulated_peak: f64,
-    /// Relative.
+    /// Relative error of the peak.
     pub peak_error: f64,
-    /// Root mean square of the acceleration in the after-shake, m/s².
+    /// RMS of the measured acceleration during the after-shake, m/s².
     pub measured_after_shake: f64,
-    /// The same of the simulation.
+    /// RMS of the simulated acceleration, m/s².
     pub simulated_after_shake: f64,
-    /// Relative.
+    /// Relative error of the after-shake.
     pub after_shake_error: f64,
 }
 
-/// Median and worst of the relative errors, whatever their sign.
+/// Median and largest absolute value of the relative errors.
 #[derive(Debug, Serialize)]
 pub struct Sizes {
-    /// Of the peaks.
+    /// Errors of the peaks.
     pub peak: Option<Summary>,
-    /// Of the after-shakes.
+    /// Errors of the after-shakes.
     pub after_shake: Option<Summary>,
 }
 
@@ -171,11 +171,11 @@ fn differences(about: &About, named: &RoleNames, cleat: &Cleat, ride: &Ride) -> 
     pairs.iter().map(difference).collect()
 }
 
-/// How the two records of a run lie to each other: by the peaks (thesis section 3.6.2) of the wheel or, where that was not
-/// measured and simulated, of the mass nearest to the tyre. `None` where no mass on the tyre's axis was.
+/// Time shift between the two records of a run, from the peaks (thesis section 3.6.2) of the wheel or, if it was not
+/// measured and simulated, of the mass nearest to the tyre. `None` without any mass on the axis of the tyre.
 ///
 /// # Errors
-/// A mass that does not feel an obstacle.
+/// Fails if a mass has no impact.
 pub(crate) fn alignment(about: &About, named: &RoleNames, pairs: &[Pair]) -> Result<Option<Alignment>, CompareError> {
     let roles = Roles::of(about, named).ok();
     let first = roles.and_then(|roles| {
@@ -190,13 +190,13 @@ pub(crate) fn alignment(about: &About, named: &RoleNames, pairs: &[Pair]) -> Res
 
 /// An acceleration that was measured and simulated.
 pub(crate) struct Pair<'a> {
-    /// Where.
+    /// Location.
     pub mass: &'a str,
-    /// Along which axis.
+    /// Axis.
     pub axis: Axis,
-    /// m/s².
+    /// Measured, m/s².
     pub measured: &'a [f64],
-    /// m/s².
+    /// Simulated, m/s².
     pub simulated: &'a [f64],
 }
 

@@ -1,10 +1,10 @@
-//! A sweep or time history as it was measured and as it was simulated, a panel for each sensor.
+//! A sweep or time history, measured and simulated, with a panel for each sensor.
 
 use super::records::Record;
 use crate::figure::{Across, Curve, Figure, Panel, Style};
 use crate::units;
 
-/// Parts of a record, of each of which the lowest and the highest value are drawn.
+/// Number of parts of a record; of each, the lowest and the highest value are drawn.
 const PARTS: usize = 800;
 
 pub(super) fn record(of: &Record) -> Figure {

@@ -8,7 +8,7 @@ use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::mean::deviation;
 use qcar_runtime::metric::Course;
 use qcar_runtime::model::{About, Quantity, Signal, SignalKind};
-use qcar_runtime::progress::Told;
+use qcar_runtime::progress::OnProgress;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::simulate::{Car, Drive, Ride, Settings, Variant, rides, tyre};
 use qcar_signals::mdf::write::Channel;
@@ -27,21 +27,21 @@ use crate::units;
 
 const ACCELERATION: &str = "m/s^2";
 
-/// Roads, ridden over.
+/// Rides over roads.
 pub(super) struct Rolled {
     campaign: String,
     model: String,
     vibration: Vec<Vibration>,
     loads: Vec<Load>,
-    /// What is odd about the campaign, as sentences.
+    /// Notices on the campaign, as sentences.
     notices: Vec<String>,
     /// Parameters that still have their start values.
     at_start: Vec<String>,
-    /// Of each ride its record, and Hz.
+    /// Record and sample rate (Hz) of each ride.
     histories: Vec<(History, f64)>,
 }
 
-/// The same as `docs/json.md` describes it.
+/// The result as JSON, see `docs/json.md`.
 #[derive(Serialize)]
 struct Json<'a> {
     campaign: &'a str,
@@ -52,48 +52,48 @@ struct Json<'a> {
     at_start: &'a [String],
 }
 
-/// What a mass does along an axis.
+/// Vibration of a mass along an axis.
 #[derive(Serialize)]
 struct Vibration {
     road: String,
     mass: String,
     axis: String,
-    /// Of ISO 2631-1.
+    /// Frequency weighting of ISO 2631-1.
     weighting: &'static str,
-    /// Root mean square, m/s².
+    /// RMS acceleration, m/s².
     rms: f64,
-    /// The same of the weighted acceleration.
+    /// RMS of the weighted acceleration, m/s².
     weighted_rms: f64,
-    /// Largest magnitude of the weighted acceleration over its root mean square: above 9 the standard wants the dose too.
+    /// Crest factor of the weighted acceleration: above 9 the standard requires the dose too.
     crest_factor: f64,
     /// Vibration dose value, m/s^1.75.
     vdv: f64,
 }
 
-/// What the tyre carries.
+/// Load of the tyre.
 #[derive(Serialize)]
 struct Load {
     road: String,
-    /// m/s.
+    /// Speed, m/s.
     speed: f64,
-    /// s.
+    /// Duration, s.
     duration: f64,
-    /// Root mean square of the height of the road about its mean, m.
+    /// RMS of the road height about its mean, m.
     road_rms: f64,
-    /// N.
+    /// Static load, N.
     static_load: f64,
-    /// Root mean square about the mean, N.
+    /// RMS of the load about its mean, N.
     dynamic_load: f64,
-    /// N.
+    /// Smallest load, N.
     lowest_load: f64,
-    /// How often the tyre lost the ground.
+    /// Number of times that the tyre lost contact.
     lift_offs: usize,
 }
 
-/// Rolls over each road, from rest on level ground before it.
+/// Rolls over each road, from equilibrium on level ground.
 ///
 /// # Errors
-/// Roads and rides that cannot be.
+/// Fails if a road cannot be read or a ride cannot be simulated.
 pub(super) fn roll(
     campaign: &Campaign,
     model: &Loaded,
@@ -112,7 +112,7 @@ pub(super) fn roll(
         variant,
     };
     let drives: Vec<Drive<'_>> = courses.iter().map(Course::drive).collect();
-    let simulate = |told: Told<'_>| rides(&car, &drives, &Settings::default(), told);
+    let simulate = |on_progress: OnProgress<'_>| rides(&car, &drives, &Settings::default(), on_progress);
     let ridden = while_counting(format!("{}: road", campaign.name), simulate);
     let mut rolled = Rolled {
         campaign: campaign.name.clone(),
@@ -171,10 +171,10 @@ impl Rolled {
         self.histories.push((history, course.sample_rate));
     }
 
-    /// Writes the record of each ride, its spectra and a figure of these.
+    /// Writes the record of each ride, and its spectra as table and figure.
     ///
     /// # Errors
-    /// A folder that cannot be written to.
+    /// Fails if the folder cannot be written to.
     pub fn put(&self, folder: &Path, kind: Kind) -> Result<(), InputError> {
         for (history, rate) in &self.histories {
             history.put(folder, kind)?;

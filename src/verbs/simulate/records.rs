@@ -1,10 +1,10 @@
-//! Sweeps and time histories, replayed through the model and compared with what was recorded.
+//! Sweeps and time histories, replayed through the model and compared with the measurement.
 
 use qcar_runtime::campaign::{Campaign, Role, Run, Test};
 use qcar_runtime::discover::Evidence;
 use qcar_runtime::discover::noise::Nuisance;
-use qcar_runtime::discover::observe::{Misread, PredictError, Stimulus, replayed};
-use qcar_runtime::discover::posterior::beginnings;
+use qcar_runtime::discover::observe::{PredictError, Stimulus, TestConditions, replayed};
+use qcar_runtime::discover::posterior::estimate_initial_states;
 use qcar_runtime::error::InputError;
 use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;
@@ -16,36 +16,36 @@ use qcar_runtime::mean::{deviation, rms};
 
 /// A run, measured and simulated.
 pub(super) struct Record {
-    /// Its file, as the campaign calls it.
+    /// Its file, as named in the campaign.
     pub run: String,
-    /// Hz.
+    /// Sample rate, Hz.
     pub rate: f64,
     /// Time of the first sample, s.
     pub start: f64,
-    /// What each sensor has measured, and what it would have, sample by sample; SI.
+    /// Measured and simulated samples of each sensor, SI.
     pub signals: Vec<(Point, [Vec<f64>; 2])>,
-    /// For each of them.
+    /// Error of each sensor.
     pub errors: Vec<RecordError>,
 }
 
-/// How far a simulated signal is from the measured one.
+/// Error of a simulated signal.
 #[derive(Serialize)]
 pub(super) struct RecordError {
-    /// The file of the run.
+    /// File of the run.
     pub run: String,
-    /// `fit` or `held_out`.
+    /// Role: `fit` or `held_out`.
     pub role: &'static str,
     /// The sensor, as location and axis.
     pub channel: String,
-    /// What it measures.
+    /// Measured quantity.
     pub quantity: &'static str,
-    /// Unit of both root mean squares.
+    /// Unit of both RMS values.
     pub unit: &'static str,
-    /// Root mean square of what was measured, without its mean.
+    /// RMS of the measured signal without its mean.
     pub measured_rms: f64,
-    /// Root mean square of the difference.
+    /// RMS of the difference.
     pub rms_error: f64,
-    /// The second over the first.
+    /// NRMS: the second over the first.
     pub nrms: f64,
 }
 
@@ -54,17 +54,17 @@ fn is_record(run: &Run) -> bool {
     matches!(run.test, Test::Sweep(_) | Test::TimeHistory(_))
 }
 
-/// Replays every sweep and time history of a campaign; none where it has none.
+/// Replays every sweep and time history of a campaign; empty without any.
 ///
 /// # Errors
-/// Runs that cannot be read or say nothing of the model.
+/// Fails if a run cannot be read or has no data for the model.
 pub(super) fn records(campaign: &Campaign, model: &dyn Model, values: &Values) -> Result<Vec<Record>, Failure> {
     if !campaign.runs.iter().any(is_record) {
         return Ok(Vec::new());
     }
     let mut alike = campaign.clone();
     alike.runs.retain(is_record);
-    // No run judges here: each is on its own from its beginning to its end.
+    // No run is held out here: each is simulated from its own initial state to its end.
     alike.runs.iter_mut().for_each(|run| run.role = Role::Fit);
     let evidence = Evidence::from_campaign(&alike, model.about())?;
     let simulated = simulated(model, values, &evidence)
@@ -84,18 +84,18 @@ pub(super) fn records(campaign: &Campaign, model: &dyn Model, values: &Values) -
 /// The samples of each sensor of a run.
 type Signals = Vec<(Point, Vec<f64>)>;
 
-/// What the sensors of each run would have recorded.
+/// Simulated samples of the sensors of each run.
 fn simulated(model: &dyn Model, values: &Values, evidence: &Evidence) -> Result<Vec<Signals>, PredictError> {
     let nuisance = Nuisance::of(evidence);
     let right = vec![0.0; nuisance.len()];
-    let mut misread = Misread::default();
-    beginnings(model, values, (&nuisance, &right), evidence, Role::Fit, &mut misread)?;
+    let mut conditions = TestConditions::default();
+    estimate_initial_states(model, values, (&nuisance, &right), evidence, Role::Fit, &mut conditions)?;
     let runs = 0..evidence.runs.len();
-    runs.map(|run| replayed(model, values, &misread, evidence, run))
+    runs.map(|run| replayed(model, values, &conditions, evidence, run))
         .collect()
 }
 
-/// A run, compared over the same band and samples as in a search.
+/// Compares a run over the same band and samples as a search does.
 fn record(
     campaign: &Campaign,
     (run, stimulus): (&Run, &Stimulus),

@@ -20,26 +20,26 @@ use crate::json;
 use crate::table::{Table, noted, number};
 use crate::units;
 
-/// What peaks and after-shakes are in.
+/// Unit of peaks and after-shakes.
 const ACCELERATION: &str = "m/s^2";
 
-/// All runs.
+/// Results of all runs.
 pub(super) struct Result<'a> {
-    /// Name.
+    /// Name of the campaign.
     pub campaign: &'a str,
-    /// Name.
+    /// Name of the model.
     pub model: &'a str,
-    /// What samples and the manifest of the campaign show to be odd.
+    /// Notices on the samples and the campaign.
     pub notices: &'a [String],
     /// Parameters that still have their start values.
     pub at_start: Vec<String>,
-    /// Runs over cleats, where there are any.
+    /// Cleat runs; `None` without any.
     pub cleats: Option<&'a Compared>,
     /// Sweeps and time histories.
     pub records: &'a [Record],
 }
 
-/// The same as `docs/json.md` describes it.
+/// The result as JSON, see `docs/json.md`.
 #[derive(Serialize)]
 struct Json<'a> {
     campaign: &'a str,
@@ -180,7 +180,7 @@ note: {notice}
     )
 }
 
-/// What is odd, and which parameters still have their start values; begins with an empty line, unless there is nothing.
+/// Notices, and parameters that still have their start values, after an empty line; empty without any.
 pub(super) fn notes(notices: &[String], at_start: &[String]) -> String {
     let noted = match noted(notices) {
         none if none.is_empty() => none,
@@ -246,10 +246,10 @@ pub(crate) fn csv(of: &Compared) -> String {
     head + &of.runs.iter().map(row).collect::<String>()
 }
 
-/// For each sweep or time history a file of what was measured beside what was simulated, and a figure of it.
+/// Writes a file of measured and simulated samples, and a figure, for each sweep or time history.
 ///
 /// # Errors
-/// A folder that cannot be written to.
+/// Fails if the folder cannot be written to.
 pub(super) fn records(of: &[Record], folder: &Path, kind: Kind) -> std::result::Result<(), InputError> {
     for record in of {
         let history = beside(record);
@@ -259,7 +259,7 @@ pub(super) fn records(of: &[Record], folder: &Path, kind: Kind) -> std::result::
     Ok(())
 }
 
-/// What was measured and what was simulated.
+/// Measured and simulated samples as a table.
 pub(super) fn beside(record: &Record) -> History {
     let samples = record.signals.first().map_or(0, |(_, [measured, _])| measured.len());
     let channels = record
@@ -283,7 +283,7 @@ pub(super) fn beside(record: &Record) -> History {
     }
 }
 
-/// A file's name without its folder and endings.
+/// Name of a file without folder and extensions.
 fn stem(file: &str) -> &str {
     let name = Path::new(file)
         .file_name()
@@ -292,7 +292,7 @@ fn stem(file: &str) -> &str {
     name.trim_end_matches(".gz").trim_end_matches(".csv")
 }
 
-/// Of each run time, the outputs of the model, the tyre's forces and contact area.
+/// Writes time, outputs of the model, tyre forces and contact area of each run.
 pub(crate) fn histories(about: &About, cleats: &[Cleat], rides: &[Ride]) -> Vec<History> {
     let runs = cleats.iter().zip(rides);
     runs.map(|(cleat, ride)| history(about, stem(&cleat.run.name), ride))

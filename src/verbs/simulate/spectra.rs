@@ -8,22 +8,22 @@ use qcar_signals::mdf::write::Channel;
 use crate::figure::{Across, Curve, Figure, Panel, Style};
 use crate::units;
 
-/// Of a segment, s: lines are a quarter of a hertz apart.
+/// Length of a segment, s: lines are a quarter of a hertz apart.
 const SEGMENT: f64 = 4.0;
-/// Hz, up to which densities are of use: a model of masses and springs says little of what lies above.
+/// Highest frequency of the densities, Hz; above it a model of masses and springs is not accurate.
 const HIGHEST: f64 = 100.0;
 
 /// One-sided densities of several channels.
 pub(super) struct Spectra {
-    /// Hz.
+    /// Frequencies, Hz.
     frequency: Vec<f64>,
-    /// Name, unit and density (unit²/Hz) of each.
+    /// Name, unit and density (unit²/Hz) of each channel.
     densities: Vec<(String, String, Vec<f64>)>,
 }
 
 impl Spectra {
-    /// Of channels that were sampled at `rate` (Hz), averaged over segments of four seconds that overlap by half (Hann, without
-    /// their linear trend); of a shorter ride over all of it.
+    /// Densities of channels with the sample rate `rate` (Hz), averaged over segments of four seconds with half
+    /// overlap, a Hann window, and without their linear trend. A shorter ride is one segment.
     pub fn of(channels: &[Channel], rate: f64) -> Self {
         let samples = channels.first().map_or(0, |channel| channel.samples.len());
         let length = ((SEGMENT * rate) as usize).min(samples);
@@ -38,7 +38,7 @@ impl Spectra {
             let spectrum = welch(&[&channel.samples], rate, &segments);
             let lines = || spectrum.frequency.iter().zip(&spectrum.density).skip(1);
             let lines = || lines().take_while(|(frequency, _)| **frequency <= HIGHEST);
-            // Both sides of the spectrum.
+            // One-sided: both halves of the spectrum.
             let density = lines().map(|(_, density)| 2.0 * density[(0, 0)].re).collect();
             frequency = lines().map(|(frequency, _)| *frequency).collect();
             densities.push((channel.name.clone(), channel.unit.clone(), density));
@@ -86,7 +86,7 @@ impl Spectra {
     }
 }
 
-/// A density in the unit that the user has chosen for its channel.
+/// A density in the unit that the user has chosen.
 fn shown(density: f64, si: &str) -> f64 {
     units::value(1.0, si).powi(2) * density
 }

@@ -1,4 +1,4 @@
-//! The masses and links of a model, to be drawn.
+//! The masses and links of a model, for a drawing.
 
 use qcar_dsl::expr::{Expr, Symbol};
 use qcar_dsl::model::{CoordinateKind, Link, Model, Term};
@@ -7,7 +7,7 @@ use qcar_dsl::schedule::Compiled;
 use qcar_dsl::show::{Stage, show};
 use serde::Serialize;
 
-/// A model as a drawing needs it.
+/// A model for a drawing.
 #[derive(Serialize)]
 pub struct Axle {
     name: String,
@@ -18,15 +18,15 @@ pub struct Axle {
     equations: String,
 }
 
-/// Something that moves.
+/// A moving part.
 #[derive(Serialize)]
 struct Point {
     name: String,
     axis: String,
-    /// `mass`, `node`, `road` or `motion`.
+    /// Kind: `mass`, `node`, `road` or `motion`.
     kind: &'static str,
     angle: bool,
-    /// kg, or kg m² of an angle.
+    /// Mass, kg, or inertia, kg m² of an angle.
     inertia: Option<f64>,
     doc: String,
 }
@@ -44,22 +44,22 @@ struct Connection {
 #[derive(Serialize)]
 struct End {
     point: String,
-    /// Its share of the stretch.
+    /// Factor of the point in the stretch.
     share: Option<f64>,
 }
 
 #[derive(Serialize)]
 struct Element {
-    /// `spring`, `damper`, `inerter` or `law`.
+    /// Kind: `spring`, `damper`, `inerter` or `law`.
     kind: &'static str,
-    /// As the model file has it.
+    /// Text of the law in the model file.
     law: String,
-    /// N/m, N s/m or kg at the parameter values; `None` of a law.
+    /// Coefficient, N/m, N s/m or kg at the parameter values; `None` for a law.
     value: Option<f64>,
 }
 
 impl Axle {
-    /// A model at the values `p` of its parameters.
+    /// A model with the parameter values `p`.
     pub fn of(compiled: &Compiled, p: &[f64]) -> Self {
         let model: &Model = &compiled.model;
         let mut writer = Writer::new(model, &model.graph, Notation::Text);
@@ -131,7 +131,7 @@ impl Drawing<'_> {
         }
     }
 
-    /// A number made of parameters.
+    /// A number that depends on parameters.
     fn value(&self, of: Expr) -> Option<f64> {
         let leaf = |symbol| match symbol {
             Symbol::Parameter(place) => self.p[usize::from(place)],

@@ -1,4 +1,4 @@
-//! A study as JSON: the results of all verbs, which programs read, and with them the curves, which the page draws.
+//! A study as JSON: the results of all verbs, and the curves for the report.
 
 use std::collections::BTreeMap;
 
@@ -7,11 +7,11 @@ use qcar_runtime::fit::report::Correlation;
 use serde::{Serialize, Serializer};
 
 use super::axle::Axle;
-use super::gap::{Explanation, Patch, Refitted, changes, explanations, patches, refitted};
 use super::gather::Study;
 use super::loops::{Loop, loops};
 use super::record::{Record, record};
 use super::records::{Replayed, records};
+use super::residuals::{Explanation, Patch, Refitted, changes, explanations, patches, refitted};
 use super::rig::{Ratio, ratios};
 use super::shapes::{Shapes, shapes};
 use super::summary::{Summary, summary};
@@ -22,7 +22,7 @@ use crate::verbs::fit::render as fitted;
 use crate::verbs::kc::Gradient;
 use crate::verbs::simulate::compared::Compared;
 
-/// What the page is made of.
+/// Data of the report.
 #[derive(Serialize)]
 pub struct Contents<'a> {
     /// The results.
@@ -44,11 +44,11 @@ pub struct Contents<'a> {
 /// The results of all verbs.
 #[derive(Serialize)]
 pub struct Result<'a> {
-    /// Its name.
+    /// Name of the campaign.
     pub campaign: &'a str,
     /// The name of the model.
     pub model: &'a str,
-    /// The answer.
+    /// Summary.
     pub summary: Summary,
     fit: fitted::Result<'a>,
     kc: &'a [Gradient],
@@ -70,7 +70,7 @@ struct GapMap {
     after: Vec<Patch>,
 }
 
-/// Serialised by heading.
+/// Tables, by heading.
 struct Changes(Difference);
 
 impl Serialize for Changes {
@@ -80,7 +80,7 @@ impl Serialize for Changes {
 }
 
 impl<'a> Contents<'a> {
-    /// Those of a study.
+    /// The contents of a study.
     pub fn of(study: &'a Study) -> Self {
         let discovery = &study.answer.discovery;
         let after = study.after.as_ref();
@@ -97,8 +97,8 @@ impl<'a> Contents<'a> {
             records: records(study),
             correlations: &study.fitted.fit.all_correlations,
             gap_map: GapMap {
-                before: patches(study, &discovery.before.gap.tiles),
-                after: patches(study, &discovery.after.gap.tiles),
+                before: patches(study, &discovery.before.misfit.tiles),
+                after: patches(study, &discovery.after.misfit.tiles),
             },
             kappa: explanations(study),
             refitted: refitted(study),

@@ -1,4 +1,4 @@
-//! All verbs on one campaign; each writes its files as soon as it is done.
+//! Runs all verbs on one campaign; each writes its files as soon as it is done.
 
 use std::path::Path;
 use std::time::Instant;
@@ -21,37 +21,37 @@ use crate::verbs::fit::{self, Choices, Fitted};
 use crate::verbs::kc::{self, Gradient};
 use crate::verbs::simulate::{self, Driven};
 
-/// What all verbs say of a campaign.
+/// Results of all verbs for a campaign.
 pub struct Study {
     /// The campaign, its model, and the fit.
     pub fitted: Fitted,
-    /// The model as the compiler sees it.
+    /// The model of the compiler.
     pub compiled: Compiled,
-    /// Gradients of the K&C curves; none without such curves.
+    /// Gradients of the K&C curves; empty without any.
     pub gradients: Vec<Gradient>,
-    /// What is missing.
+    /// Result of the discovery.
     pub answer: Answer,
-    /// The model with it.
+    /// The extended model; `None` without findings in the model.
     pub after: Option<After>,
-    /// The cleat runs, where there are any.
+    /// The cleat runs; `None` without any.
     pub track: Option<Track>,
-    /// Time for all of it.
+    /// Duration, s.
     pub seconds: f64,
 }
 
 /// The extended model.
 pub struct After {
-    /// As it runs.
+    /// The model, ready to run.
     pub model: Loaded,
-    /// As the compiler sees it.
+    /// The model of the compiler.
     pub compiled: Compiled,
     /// Its parameters.
     pub values: Values,
 }
 
-/// The cleat runs, driven by each model and variant.
+/// The cleat runs, simulated with each model and variant.
 pub struct Track {
-    /// What was measured.
+    /// Measured runs.
     pub cleats: Vec<Cleat>,
     /// The fitted model.
     pub before: Driven,
@@ -59,16 +59,16 @@ pub struct Track {
     pub at_start: Vec<String>,
     /// The extended model.
     pub after: Option<Driven>,
-    /// The better of both without its longitudinal motion.
+    /// The better of both without longitudinal motion.
     pub locked: Driven,
-    /// The same on a point contact.
+    /// The same with a point contact.
     pub vertical: Driven,
 }
 
-/// Runs all verbs; their files go into folders of `out`.
+/// Runs all verbs; their files are in subfolders of `out`.
 ///
 /// # Errors
-/// What any of them finds wrong with the campaign.
+/// Fails as the verbs do.
 pub fn gather(folder: &Path, model: Option<&str>, out: &Path) -> Result<Study, Failure> {
     let begun = Instant::now();
     let fitted = fit::fit(folder, &Choices::of_model(model))?;
@@ -100,7 +100,7 @@ fn gradients(campaign: &Campaign, out: &Path) -> Result<Vec<Gradient>, InputErro
     Ok(gradients)
 }
 
-/// The new model file, read like any other.
+/// The extended model file, read like any other.
 fn after(campaign: &Campaign, answer: &Answer) -> Result<Option<After>, Failure> {
     let file = answer.model.as_ref().and_then(|model| model.file.as_ref());
     let Some(file) = file.map(|file| file.display().to_string()) else {

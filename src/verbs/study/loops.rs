@@ -1,4 +1,4 @@
-//! The quasi-static K&C cycles, to be drawn.
+//! Slow K&C cycles, for figures.
 
 use qcar_runtime::campaign::{Campaign, Run, Test};
 use serde::Serialize;
@@ -10,16 +10,16 @@ use crate::report::rounded::curve;
 #[derive(Serialize)]
 pub struct Loop {
     test: &'static str,
-    /// m.
+    /// Displacement, m.
     displacement: Vec<f64>,
-    /// N.
+    /// Force, N.
     force: Vec<f64>,
 }
 
-/// Points that a drawing can show.
+/// Number of points of a figure.
 const MOST: usize = 400;
 
-/// The cycles of a study whose gradients were taken.
+/// The cycles of a study with gradients.
 pub fn loops(of: &Study) -> Vec<Loop> {
     let campaign = &of.fitted.campaign;
     let cycles = campaign.runs.iter().filter_map(|run| match run.test {
@@ -31,7 +31,7 @@ pub fn loops(of: &Study) -> Vec<Loop> {
 }
 
 fn cycle(campaign: &Campaign, run: &Run, test: &'static str) -> Option<Loop> {
-    // What cannot be read has been refused with its gradients.
+    // Unreadable files have been refused with their gradients.
     let measured = campaign.curve(run).ok()?;
     let step = measured.force.len().div_ceil(MOST);
     let thinned = |values: Vec<f64>| curve(values.into_iter().step_by(step));

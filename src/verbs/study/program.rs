@@ -1,4 +1,4 @@
-//! The model of a study as a program of its report, which computes the measured ratios with other values.
+//! The model of a study as JavaScript for the report, which computes the measured ratios for other parameter values.
 
 use std::collections::BTreeSet;
 
@@ -6,8 +6,8 @@ use super::gather::Study;
 use crate::export::Subject;
 use crate::export::javascript::{Ratio, responses};
 
-/// The extended model, or else the fitted one, as an expression of JavaScript; `None` where it is not linear, whose
-/// responses depend on how hard it is driven.
+/// The extended model, otherwise the fitted one, as an expression of JavaScript. `None` for a nonlinear model, whose
+/// responses depend on the level.
 pub fn program(of: &Study) -> Option<String> {
     let fitted = of.fitted.values();
     let (model, compiled, values) = match &of.after {
@@ -27,7 +27,7 @@ pub fn program(of: &Study) -> Option<String> {
     Some(responses(subject, about, values, &ratios))
 }
 
-/// The ratios that were measured, each once.
+/// The measured ratios, without duplicates.
 fn measured(of: &Study) -> Vec<Ratio<'_>> {
     let mut seen = BTreeSet::new();
     let levels = of.fitted.levels.iter();

@@ -1,4 +1,4 @@
-//! What a study was made from: the campaign's runs and sensors, and the settings.
+//! Inputs of a study: runs and sensors of the campaign, and settings.
 
 use qcar_runtime::campaign::{Campaign, Role, Run, Test};
 use qcar_runtime::fit::Plan;
@@ -14,7 +14,7 @@ pub struct Record {
     vehicle: Vec<(String, f64)>,
     sensors: Vec<Sensor>,
     runs: Vec<Listed>,
-    /// What was odd, as sentences.
+    /// Notices, as sentences.
     notices: Vec<String>,
     settings: Settings,
     version: &'static str,
@@ -34,11 +34,11 @@ struct Listed {
     file: String,
     role: &'static str,
     kind: &'static str,
-    /// How it was driven.
+    /// Excitation of the run.
     drive: Vec<Drive>,
 }
 
-/// Something that a run was driven with or at.
+/// A property of a run's excitation.
 #[derive(Serialize)]
 struct Drive {
     what: String,

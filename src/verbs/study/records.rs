@@ -1,4 +1,4 @@
-//! Records over time: measurement, residuals of the models of the search, and the travel of a force.
+//! Records over time: measurement, residuals before and after, and the travel of a force.
 
 use qcar_runtime::campaign::{Quantity, Role};
 use qcar_runtime::discover::Evidence;
@@ -19,24 +19,24 @@ pub struct Replayed {
     channel: String,
     quantity: &'static str,
     unit: &'static str,
-    /// s.
+    /// Times, s.
     time: Vec<f64>,
     measured: Vec<f64>,
     before: Vec<f64>,
     after: Option<Vec<f64>>,
-    /// RMS of what is left over the RMS of what was measured, without its mean.
+    /// NRMS: RMS of the residual over RMS of the measured signal without its mean.
     nrms_before: f64,
     nrms_after: Option<f64>,
-    /// Of a force: the travel that was prescribed.
+    /// Prescribed travel, for a force.
     travel: Option<Travel>,
 }
 
 /// A prescribed motion at the times of a record.
 #[derive(Serialize)]
 struct Travel {
-    /// m.
+    /// Travel, m.
     displacement: Vec<f64>,
-    /// m/s.
+    /// Speed, m/s.
     velocity: Vec<f64>,
 }
 
@@ -70,9 +70,9 @@ pub fn records(of: &Study) -> Vec<Replayed> {
     replayed.collect()
 }
 
-/// What a model shows, from what it leaves.
+/// Modelled values, from the residuals.
 fn modelled(of: &Explanation, place: usize, series: &Series) -> Vec<f64> {
-    let left = of.gap.residuals[place].iter().zip(&series.sigma);
+    let left = of.misfit.residuals[place].iter().zip(&series.sigma);
     let modelled = series
         .value
         .iter()
@@ -88,7 +88,7 @@ fn nrms(measured: &[f64], modelled: &[f64]) -> f64 {
     (left / all).sqrt()
 }
 
-/// The travel beside a force, where one was prescribed.
+/// The prescribed travel of a force; `None` without any.
 fn travel(evidence: &Evidence, series: &Series) -> Option<Travel> {
     let Stimulus::History { inputs, rate, .. } = &evidence.runs[series.run].stimulus else {
         return None;
@@ -106,7 +106,7 @@ fn travel(evidence: &Evidence, series: &Series) -> Option<Travel> {
     })
 }
 
-/// Whether an input is the travel over which a force is drawn.
+/// True if an input is the travel for the abscissa of a force.
 fn moves(input: &Point, series: &Series) -> bool {
     input.quantity == Quantity::Displacement
         && series.sensor.quantity == Quantity::Force

@@ -16,41 +16,41 @@ use crate::verbs::fit::files::{Compared, compare};
 #[derive(Serialize)]
 pub struct Ratio {
     run: String,
-    /// `fit` or `held_out`.
+    /// Role: `fit` or `held_out`.
     pub role: &'static str,
     channel: String,
-    /// True where the cost holds it.
+    /// True if it is part of the cost.
     fitted: bool,
-    /// Hz.
+    /// Frequencies, Hz.
     frequency: Vec<f64>,
     coherence: Vec<f64>,
     measured: Polar,
-    /// To either side of the measurement.
+    /// Uncertainty of the measurement to either side.
     band: Polar,
     start: Polar,
     before: Polar,
     after: Option<Polar>,
-    /// Of the fitted model.
+    /// Ratio of the fitted model.
     pub quality_before: Quality,
-    /// Of the extended model.
+    /// Ratio of the extended model.
     pub quality_after: Option<Quality>,
 }
 
 /// Magnitude and phase.
 #[derive(Serialize)]
 pub struct Polar {
-    /// dB.
+    /// Magnitude, dB.
     pub magnitude: Vec<f64>,
-    /// Degrees.
+    /// Phase, degrees.
     pub phase: Vec<f64>,
 }
 
-/// All ratios that were measured.
+/// All measured ratios.
 pub fn ratios(of: &Study) -> Vec<Ratio> {
     let after = of.after.as_ref();
     let after = after.map(|after| {
-        while_counting(swept_by(&of.fitted.campaign.name, &*after.model), |told| {
-            Swept::new(&*after.model, &after.values, &of.answer.evidence, told)
+        while_counting(swept_by(&of.fitted.campaign.name, &*after.model), |on_progress| {
+            Swept::new(&*after.model, &after.values, &of.answer.evidence, on_progress)
         })
     });
     let compared = compare(&of.fitted);
@@ -91,7 +91,7 @@ fn together(of: &Compared, after: Option<&Swept>) -> Ratio {
 }
 
 impl Polar {
-    /// Values, with their phases (rad) on the turn that is to be shown.
+    /// Values with these phases (rad).
     pub fn new(values: &[Complex<f64>], phase: &[f64]) -> Self {
         Polar {
             magnitude: curve(values.iter().map(|value| 20.0 * value.norm().log10())),
@@ -100,7 +100,7 @@ impl Polar {
     }
 }
 
-/// The fit over the lines at which the model is known.
+/// Fit percentages over the lines at which the model is known.
 fn known(of: &Observation, values: &[Complex<f64>]) -> Quality {
     let lines: Vec<usize> = (0..values.len()).filter(|&line| values[line].re.is_finite()).collect();
     let at = |values: &[Complex<f64>]| lines.iter().map(|&line| values[line]).collect::<Vec<_>>();
@@ -108,7 +108,7 @@ fn known(of: &Observation, values: &[Complex<f64>]) -> Quality {
     quality(&frequency, &at(values), &at(&of.value))
 }
 
-/// What the measurement may be off by, to either side.
+/// Uncertainty of the measurement, to either side.
 pub fn band(of: &Observation) -> Polar {
     let spread = of.spread();
     Polar {
@@ -117,7 +117,7 @@ pub fn band(of: &Observation) -> Polar {
     }
 }
 
-/// Phases without jumps from line to line, rad.
+/// Unwrapped phases, rad.
 pub fn unwrapped(values: &[Complex<f64>]) -> Vec<f64> {
     let mut last = 0.0;
     let phases = values.iter().map(|value| {
@@ -127,7 +127,7 @@ pub fn unwrapped(values: &[Complex<f64>]) -> Vec<f64> {
     phases.collect()
 }
 
-/// Phases on the turn of others.
+/// Phases shifted by full turns to be close to others.
 pub fn nearest(values: &[Complex<f64>], others: &[f64]) -> Vec<f64> {
     values
         .iter()
@@ -136,7 +136,7 @@ pub fn nearest(values: &[Complex<f64>], others: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// An angle, and as many turns as bring it closest to another.
+/// An angle plus the full turns that bring it closest to another.
 fn close(angle: f64, other: f64) -> f64 {
     if other.is_finite() && angle.is_finite() {
         angle + std::f64::consts::TAU * ((other - angle) / std::f64::consts::TAU).round()

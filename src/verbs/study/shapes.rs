@@ -6,35 +6,35 @@ use serde::Serialize;
 use super::gather::Study;
 use crate::report::rounded::rounded;
 
-/// Before and after.
+/// Modes before and after.
 #[derive(Serialize)]
 pub struct Shapes {
     before: Vec<Shape>,
     after: Option<Vec<Shape>>,
 }
 
-/// A natural vibration.
+/// A mode.
 #[derive(Serialize)]
 pub struct Shape {
-    /// Hz.
+    /// Natural frequency, Hz.
     pub frequency: f64,
     /// Damping ratio.
     pub damping: f64,
     parts: Vec<Moving>,
 }
 
-/// What a point does in it.
+/// Motion of a point in a mode.
 #[derive(Serialize)]
 struct Moving {
     point: String,
     axis: String,
-    /// Over the largest.
+    /// Amplitude relative to the largest.
     amplitude: f64,
-    /// Degrees.
+    /// Phase, degrees.
     phase: f64,
 }
 
-/// The vibrations of both models.
+/// The modes of both models.
 pub fn shapes(of: &Study) -> Shapes {
     let all = |modes: Vec<Mode>| modes.iter().map(shape).collect();
     Shapes {
@@ -43,7 +43,7 @@ pub fn shapes(of: &Study) -> Shapes {
     }
 }
 
-/// A vibration as a page needs it.
+/// A mode for the report.
 pub fn shape(of: &Mode) -> Shape {
     let moving = |part: &Part| Moving {
         point: part.location.clone(),

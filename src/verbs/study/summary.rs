@@ -1,4 +1,4 @@
-//! The answer in a few numbers, for the head of the report and for the terminal.
+//! Summary of a study, for the head of the report and the terminal.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -15,18 +15,18 @@ use crate::units;
 use crate::verbs::discover::render::{choice, sentence};
 use crate::verbs::simulate::compared::Sizes;
 
-/// The answer.
+/// The summary.
 #[derive(Serialize)]
 pub struct Summary {
-    /// In words.
+    /// The verdict as a sentence.
     pub missing: String,
-    /// The words' first one: `none`, `found`, `class`, `unknown`.
+    /// The verdict: `none`, `found`, `class`, `unknown`.
     pub verdict: Verdict,
     /// Mean fit percentages of the channels of the fitted and of the held-out runs.
     pub rig_fit: BTreeMap<&'static str, Percent>,
 }
 
-/// Of the fitted model, and of the extended model.
+/// Values of the fitted model, and of the extended model.
 #[derive(Serialize)]
 pub struct Percent {
     magnitude: BeforeAfter,
@@ -39,7 +39,7 @@ struct BeforeAfter {
     after: Option<f64>,
 }
 
-/// The answer of a study with these ratios.
+/// Summary of a study with these ratios.
 pub fn summary(of: &Study, ratios: &[Ratio]) -> Summary {
     let roles = ["fit", "held_out"].into_iter();
     Summary {
@@ -65,14 +65,14 @@ fn percent(of: &[Ratio], role: &str) -> Option<Percent> {
     })
 }
 
-/// What the terminal gets.
+/// Text for the terminal.
 pub fn text(of: &Study, summary: &Summary, folder: &Path) -> String {
     let mut out = format!("{}: {}\n\n", of.fitted.campaign.name, summary.missing);
     out += &fits(summary);
     if let Some(track) = &of.track {
         let _ = write!(out, "\n{}{}", cleats(track), at_start(&track.at_start));
     }
-    let _ = write!(out, "\n{}", gaps(of));
+    let _ = write!(out, "\n{}", residuals(of));
     for (place, (finding, of_names)) in of.answer.discovery.findings.iter().zip(&of.answer.units).enumerate() {
         let known = finding.parameters.iter().filter(|parameter| parameter.2.is_finite());
         let value = |(name, value, error): &(String, f64, f64)| {
@@ -127,7 +127,7 @@ fn cleats(of: &Track) -> String {
     table.text()
 }
 
-/// What no rig run sees is no more than a guess in the rides of the rig fit.
+/// Names parameters that no rig run determines: the rides of the rig fit use their start values.
 fn at_start(names: &[String]) -> String {
     let has = if names.len() == 1 {
         "has its start value"
@@ -144,8 +144,8 @@ fn median(of: Option<qcar_runtime::compare::Summary>) -> String {
     of.map_or("-".into(), |summary| format!("{:.1}", 100.0 * summary.median))
 }
 
-fn gaps(of: &Study) -> String {
-    let (before, after) = (&of.answer.discovery.before.gap, &of.answer.discovery.after.gap);
+fn residuals(of: &Study) -> String {
+    let (before, after) = (&of.answer.discovery.before.misfit, &of.answer.discovery.after.misfit);
     let changed = !of.answer.discovery.findings.is_empty();
     let mut table = Table::new(["residual_in_sd", "before", "after"]);
     for (name, before, after) in [

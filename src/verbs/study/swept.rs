@@ -5,30 +5,30 @@ use std::collections::BTreeMap;
 use nalgebra::Complex;
 use qcar_runtime::discover::observe::{Evidence, Kind, Stimulus, predict};
 use qcar_runtime::model::{Channel, Model};
-use qcar_runtime::progress::{self, Told};
+use qcar_runtime::progress::{self, OnProgress};
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::response::ratio::ratio;
 
-/// A model with values. A nonlinear one answers at the level of each run, and is known at the lines of its evidence.
+/// A model with values. A nonlinear model is evaluated at the level of each run, at the lines of its data.
 pub struct Swept<'a> {
     model: &'a dyn Model,
     values: &'a Values,
-    /// `None` of what is taken as linear.
+    /// The responses; `None` for a model that counts as linear.
     responses: Option<BTreeMap<Key, Response>>,
 }
 
 /// A run and a location.
 type Key = (String, String);
-/// Hz, and the first harmonic over the pad.
+/// Frequencies, Hz, and the first harmonic over the pad.
 type Response = (Vec<f64>, Vec<Complex<f64>>);
 
-/// What is being done meanwhile.
+/// Progress text.
 pub fn swept_by(campaign: &str, model: &dyn Model) -> String {
     format!("{campaign}: {} in sweep", model.about().name)
 }
 
 impl<'a> Swept<'a> {
-    /// A model as it answers to small motions about rest, whatever the run.
+    /// A model for small motions about rest, for any run.
     pub fn at_rest(model: &'a dyn Model, values: &'a Values) -> Self {
         Swept {
             model,
@@ -38,14 +38,14 @@ impl<'a> Swept<'a> {
     }
 
     /// A model in the sweeps of a campaign.
-    pub fn new(model: &'a dyn Model, values: &'a Values, evidence: &Evidence, told: Told<'_>) -> Self {
+    pub fn new(model: &'a dyn Model, values: &'a Values, evidence: &Evidence, on_progress: OnProgress<'_>) -> Self {
         if model.about().linear {
             return Swept::at_rest(model, values);
         }
         let is_sweep = |run: &usize| matches!(evidence.runs[*run].stimulus, Stimulus::Sweep { .. });
         let sweeps = (0..evidence.runs.len()).filter(is_sweep);
         let sweeps: Vec<Evidence> = sweeps.map(|run| evidence.only(|own| own == run)).collect();
-        let responses = progress::map(&sweeps, told, |sweep| responses(model, values, sweep));
+        let responses = progress::map(&sweeps, on_progress, |sweep| responses(model, values, sweep));
         Swept {
             model,
             values,
@@ -53,7 +53,7 @@ impl<'a> Swept<'a> {
         }
     }
 
-    /// A channel in a run with an excitation, at these frequencies (Hz); `None` where the model cannot give it.
+    /// A channel in a run with an excitation, at these frequencies (Hz); `None` if the model lacks it.
     pub fn ratio(&self, run: &str, excitation: usize, of: &Channel, frequency: &[f64]) -> Option<Vec<Complex<f64>>> {
         let Channel {
             numerator, denominator, ..
@@ -64,7 +64,7 @@ impl<'a> Swept<'a> {
         };
         let response = |location: &str| responses.get(&(run.to_string(), location.to_string()));
         let (lines, above) = response(&numerator.location)?;
-        // The pad has no response of its own: all others are over it.
+        // The pad is the reference of all responses.
         let ratio = match response(&denominator.location) {
             None => above.clone(),
             Some((_, below)) => above.iter().zip(below).map(|(above, below)| above / below).collect(),
@@ -73,7 +73,7 @@ impl<'a> Swept<'a> {
     }
 }
 
-/// What a model shows in one sweep.
+/// Responses of a model in one sweep.
 fn responses(model: &dyn Model, values: &Values, sweep: &Evidence) -> BTreeMap<Key, Response> {
     let run = &sweep.runs[0];
     let predictions = predict(model, values, &[], sweep, run.role).unwrap_or_default();
@@ -85,7 +85,7 @@ fn responses(model: &dyn Model, values: &Values, sweep: &Evidence) -> BTreeMap<K
         }
         let value = prediction.value;
         let key = (run.name.clone(), series.sensor.location.clone());
-        // A place moves as the mean of its ends does.
+        // The motion of a place is the mean of its ends.
         let mean = |(_, of_front): &mut Response| {
             let both = of_front.iter_mut().zip(&value);
             both.for_each(|(front, rear)| *front = (*front + rear) * 0.5);
@@ -98,7 +98,7 @@ fn responses(model: &dyn Model, values: &Values, sweep: &Evidence) -> BTreeMap<K
     first
 }
 
-/// On the straight line between two neighbours; NaN outside.
+/// Linear interpolation between two neighbours; NaN outside.
 pub fn between(at: &[f64], values: &[Complex<f64>], wanted: f64) -> Complex<f64> {
     let right = at.partition_point(|&f| f < wanted);
     match (right.checked_sub(1), at.get(right)) {

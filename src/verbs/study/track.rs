@@ -17,9 +17,9 @@ use crate::verbs::simulate::compared::{Compared, Pair, alignment, pairs};
 #[derive(Serialize)]
 pub struct Track<'a> {
     runs: Vec<Run>,
-    /// Parameters that stand at their start values before.
+    /// Parameters of the baseline that are still at their start values.
     at_start: &'a [String],
-    /// Keyed by `mass_axis`.
+    /// Errors by `mass_axis`.
     histograms: BTreeMap<String, Errors>,
 }
 
@@ -28,15 +28,15 @@ pub struct Track<'a> {
 struct Run {
     file: String,
     role: &'static str,
-    /// m/s.
+    /// Speed, m/s.
     speed: f64,
     cleat: String,
-    /// s after the wheel has felt the cleat.
+    /// Times after the impact of the wheel, s.
     time: Vec<f64>,
     traces: Vec<Trace>,
 }
 
-/// An acceleration in m/s², each record aligned at the wheel's peak.
+/// An acceleration in m/s²; all records are aligned at the peak of the wheel.
 #[derive(Serialize)]
 struct Trace {
     mass: String,
@@ -48,7 +48,7 @@ struct Trace {
     vertical: Vec<f64>,
 }
 
-/// Relative errors in bins.
+/// Histogram of relative errors.
 #[derive(Serialize)]
 struct Errors {
     peak: BeforeAfter,
@@ -64,7 +64,7 @@ struct BeforeAfter {
 /// Width of a bin, relative.
 const BIN: f64 = 0.05;
 
-/// Shown before the wheel feels the cleat, s.
+/// Time before the impact that is shown, s.
 const RUN_IN: f64 = 0.05;
 
 /// The cleat runs of a study.
@@ -91,7 +91,7 @@ pub fn track(of: &Study) -> Option<Track<'_>> {
     })
 }
 
-/// What the outputs of the rides mean, and which mass the campaign calls the wheel.
+/// The signals of the outputs, and the mass that the campaign calls the wheel.
 struct Models<'a> {
     named: &'a RoleNames,
     before: &'a About,
@@ -128,10 +128,10 @@ fn run(models: &Models, track: &gather::Track, place: usize, cleat: &Cleat) -> O
 /// A mass and an axis.
 type Key = (String, &'static str);
 
-/// The records of a run, cut to what is shown.
+/// The records of a run over the shown time.
 struct Aligned {
     time: Vec<f64>,
-    /// Measured and simulated.
+    /// Measured and simulated accelerations.
     traces: BTreeMap<Key, (Vec<f64>, Vec<f64>)>,
 }
 

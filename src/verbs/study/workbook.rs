@@ -14,15 +14,15 @@ use crate::verbs::simulate::compared::Difference;
 
 /// The sheet of the errors over cleats.
 const ERRORS: &str = "Cleat errors";
-/// What a motion is measured in.
+/// Quantity of a motion.
 const ACCELERATION: &str = "m/s^2";
 /// The columns of the errors of the peaks and of the after-shakes, %.
 const OF_ERRORS: [u16; 2] = [7, 10];
 
-/// Writes it into a folder.
+/// Writes the workbook into a folder.
 ///
 /// # Errors
-/// A folder that cannot be written to.
+/// Fails if the folder cannot be written to.
 pub(super) fn write(of: &Study, folder: &Path) -> Result<(), InputError> {
     let bytes = filled(&folder.join(FILE), |workbook| {
         sheets(workbook, &of.fitted)?;

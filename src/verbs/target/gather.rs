@@ -173,8 +173,8 @@ pub(super) fn gather(
             generations: plan.generations,
             ..FrontSettings::default()
         };
-        while_counting("the front: generation".into(), |told| {
-            front(&task, &aims, &known, settings, told)
+        while_counting("the front: generation".into(), |on_progress| {
+            front(&task, &aims, &known, settings, on_progress)
         })
     });
     let doubts = intervals(&found.design);
@@ -187,8 +187,8 @@ pub(super) fn gather(
             seed,
             ..SpaceSettings::default()
         };
-        while_counting("the solution space: round".into(), |told| {
-            space(&task, &known, settings, told)
+        while_counting("the solution space: round".into(), |on_progress| {
+            space(&task, &known, settings, on_progress)
         })
     } else {
         None

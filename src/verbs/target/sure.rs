@@ -50,8 +50,8 @@ pub(super) fn intervals(
 /// need, and so on (after Du and Chen, J. Mech. Des. 126, 2004, who find them to first order).
 pub(super) fn design(task: &mut Task<'_>, axle: &Axle<'_>, seed: u64, probability: Option<f64>) -> Option<Found> {
     let searched = |task: &Task<'_>| {
-        while_counting("searching the design of lowest cost: step".into(), |told| {
-            search(task, seed, told)
+        while_counting("searching the design of lowest cost: step".into(), |on_progress| {
+            search(task, seed, on_progress)
         })
     };
     let mut found = searched(task)?;

@@ -1,4 +1,4 @@
-//! Newton: the accelerations of what has inertia.
+//! Newton: accelerations of coordinates with inertia.
 
 use super::nodes::places;
 use super::{Derivation, Role};
@@ -7,7 +7,7 @@ use crate::expr::{CoordinateId, Expr, Symbol};
 use crate::model::CoordinateKind;
 
 impl Derivation<'_> {
-    /// Newton, by accelerations relative to what is known of them beforehand: free fall, and prescribed motions.
+    /// Newton's equations for accelerations relative to the known ones: free fall, and prescribed motions.
     pub(super) fn accelerations(&mut self) {
         let coordinates = self.with_role(Role::Inertial);
         let mut matrix = Symmetric::new(coordinates.len());
@@ -54,7 +54,7 @@ impl Derivation<'_> {
         }
     }
 
-    /// The sum of the forces on a coordinate, but for gravity and inerters.
+    /// Sum of the forces on a coordinate without gravity and inerters.
     fn net_force(&mut self, c: CoordinateId) -> Expr {
         let mut sum = self.applied(c);
         for (l, coefficient) in self.links_of(c) {

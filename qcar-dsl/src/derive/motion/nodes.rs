@@ -1,8 +1,8 @@
 //! Massless nodes: their force balance holds at every instant.
 //!
-//! A balance that depends on the node's velocity is solved for it; one that does not, for the position. Nodes that
-//! dampers join to each other and to nothing else are a group: no damper resists their common motion, so the balance
-//! of the whole group places its leader, and the others are placed by their offsets from the leader.
+//! A balance that depends on the velocity of the node is solved for it, any other for the position. Nodes that dampers
+//! connect only to each other are a group: no damper resists their common motion, so the balance of the whole group
+//! determines its leader, and the others are determined by their offsets from the leader.
 
 use super::{Derivation, Role};
 use crate::derive::combination::combine;
@@ -82,7 +82,7 @@ impl Derivation<'_> {
         })
     }
 
-    /// The stretch of a link by what leads, and by the offsets of what is led.
+    /// The stretch of a link in terms of leaders and offsets.
     fn by_leaders(&mut self, l: LinkId) -> Vec<(CoordinateId, Expr)> {
         let mut reduced: Vec<(CoordinateId, Expr)> = Vec::new();
         for &(c, coefficient) in self.stretch_of(l) {
@@ -138,8 +138,8 @@ impl Derivation<'_> {
         }
     }
 
-    /// The balance of a static node holds at every instant, so its time derivative is zero too. What the inputs push there
-    /// does not change: `check` refuses forces whose rate would be needed.
+    /// The balance of a static node holds at every instant, so its time derivative is zero too. Force inputs there do
+    /// not occur: `check` refuses forces whose rate would be needed.
     pub(super) fn velocities_of_static_nodes(&mut self) {
         let steady = vec![self.g.constant(0.0); self.with_role(Role::Static).len()];
         let solution = self.solve_nodes(Role::Static, steady, |d, l| {
@@ -165,7 +165,7 @@ impl Derivation<'_> {
         }
     }
 
-    /// The position of a coordinate, or its offset where it is led.
+    /// The position of a coordinate, or its offset if it has a leader.
     fn place(&mut self, c: CoordinateId) -> Expr {
         let symbol = if self.leaders.contains_key(&c) {
             Symbol::Offset(c)
@@ -181,7 +181,7 @@ impl Derivation<'_> {
         self.offset_rates.get(&c).copied().unwrap_or(symbol)
     }
 
-    /// The part of a stretch, or of its rate, that the coordinates of other roles give.
+    /// The part of a stretch, or of its rate, by the coordinates of other kinds.
     fn along_others(&mut self, l: LinkId, role: Role, value: fn(&mut Self, CoordinateId) -> Expr) -> Expr {
         let mut terms = self.reduced[l.0 as usize].clone();
         terms.retain(|&(c, _)| self.roles[c.0 as usize] != role);
@@ -192,8 +192,8 @@ impl Derivation<'_> {
         combine(self.g, terms)
     }
 
-    /// Solves the balances of the nodes of one role. `law` gives for a link how its force grows with what is solved
-    /// for, and what it is when that is zero; `applied` is what pushes each node beside the links.
+    /// Solves the balances of the nodes of one kind. `law` gives for a link the slope of its force by the unknown, and
+    /// the force if that is zero; `applied` gives the other forces on each node.
     fn solve_nodes(
         &mut self,
         role: Role,
@@ -225,7 +225,7 @@ impl Derivation<'_> {
             .collect()
     }
 
-    /// The forces that are inputs, on a node and on all that it leads.
+    /// Force inputs on a node and on the nodes that follow it.
     fn applied_to_group(&mut self, c: CoordinateId) -> Expr {
         let mut sum = self.applied(c);
         for (led, leader) in self.leaders.clone() {
@@ -271,7 +271,7 @@ impl Derivation<'_> {
     }
 }
 
-/// Where the coordinates of a stretch stand in a list, with their coefficients.
+/// Positions of the coordinates of a stretch in a list, with their coefficients.
 ///
 /// The list is in the order of the coordinates.
 pub(super) fn places(list: &[CoordinateId], stretch: &[(CoordinateId, Expr)]) -> Vec<(usize, Expr)> {

@@ -1,4 +1,4 @@
-//! What a parameter changes: the laws and stretches of links, inertias, and what the force inputs push.
+//! Changes by a parameter: laws and stretches of links, inertias, and the effects of force inputs.
 
 use super::load::Load;
 use crate::check::Checked;
@@ -9,33 +9,33 @@ use crate::derive::vectors::Source;
 use crate::expr::{CoordinateId, Differential, Expr, Graph, Symbol};
 use crate::model::CoordinateKind;
 
-/// What changes with one parameter.
+/// Changes by one parameter.
 pub(super) struct Change {
     pub(super) links: Vec<LinkChange>,
     pub(super) inertias: Vec<(usize, Expr)>,
     /// The loads of the force inputs.
     pub(super) loads: Vec<Load>,
-    /// Where points are, by their places.
+    /// Combinations of points, by position.
     points: Vec<(usize, Vec<(CoordinateId, Expr)>)>,
 }
 
-/// How a link changes with a parameter.
+/// Change of a link by a parameter.
 pub(super) struct LinkChange {
     pub(super) link: usize,
     pub(super) stiffness: Complex,
     pub(super) stretch: Vec<(CoordinateId, Expr)>,
-    /// Of the forces that force inputs have in its law.
+    /// Change of the effect of force inputs in its law.
     pub(super) inputs: Vec<(u16, Complex)>,
 }
 
 impl Change {
-    /// How the combination of a point changes.
+    /// Change of the combination of a point.
     pub(super) fn point(&self, place: usize) -> &[(CoordinateId, Expr)] {
         let found = self.points.iter().find(|(own, _)| *own == place);
         found.map_or(&[], |(_, slopes)| slopes)
     }
 
-    /// How what a source pushes by itself changes.
+    /// Change of the direct effect of an excitation.
     pub(super) fn pushed(&self, source: Source) -> &[(usize, Complex)] {
         match source {
             Source::Force(i) => &self.loads[i as usize],
@@ -98,7 +98,7 @@ pub(super) fn change(model: &Checked, g: &mut Graph, links: &[Stiffness], loads:
     }
 }
 
-/// Of a mass.
+/// Change of a mass.
 pub(super) fn inertia(model: &Checked, c: usize) -> Option<Expr> {
     match model.coordinates[c].kind {
         CoordinateKind::Mass(inertia) => Some(inertia),

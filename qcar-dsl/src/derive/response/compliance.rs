@@ -10,25 +10,25 @@ use crate::derive::elimination::{Factors, Scalar, Symmetric};
 use crate::expr::{CoordinateId, Expr, Graph};
 use crate::model::CoordinateKind;
 
-/// Up to so many unknowns, every entry is taken from the inverse: it is about as much work as a solution for each output, and all
-/// outputs and their adjoints share it. Its work grows as the square of the unknowns, that of a solution as their number.
+/// Largest number of unknowns for which entries are taken from the inverse. It costs about as much as a solution for
+/// each output, and all outputs and their adjoints share it. Its cost grows with the square of the number of unknowns,
+/// that of a solution linearly.
 const FEW_UNKNOWNS: usize = 24;
 
-/// What moves under which forces; what is prescribed does not.
+/// Motions under forces; prescribed coordinates do not move.
 pub(super) struct Compliance {
-    /// Of the impedance of the unknowns.
+    /// Factors of the impedance of the unknowns.
     factors: Factors<Complex>,
-    /// The coordinates that they are.
+    /// Their coordinates.
     unknowns: Vec<usize>,
-    /// How many coordinates there are.
+    /// Number of coordinates.
     coordinates: usize,
     /// The amplitude of each coordinate for a unit force on each.
     inverse: Option<Vec<Vec<Complex>>>,
 }
 
 impl Compliance {
-    /// How the impedance makes the coordinates move that are not prescribed. Adjoints of many outputs take their entries from the
-    /// inverse.
+    /// The compliance of the coordinates that are not prescribed. Adjoints of many outputs are taken from the inverse.
     pub(super) fn of(model: &Checked, g: &mut Graph, impedance: &Symmetric<Complex>, adjoints: bool) -> Self {
         let coordinates = model.coordinates.len();
         let prescribed = |c: usize| {
@@ -64,12 +64,12 @@ impl Compliance {
         entries
     }
 
-    /// The inverse, where all amplitudes come from it.
+    /// The inverse, if all amplitudes come from it.
     fn dense(&self) -> Option<&Vec<Vec<Complex>>> {
         self.inverse.as_ref().filter(|_| self.is_small())
     }
 
-    /// Whether adjoints are at hand.
+    /// True if adjoints are available.
     pub(super) fn has_adjoints(&self) -> bool {
         self.inverse.is_some()
     }
@@ -89,7 +89,7 @@ impl Compliance {
         amplitudes
     }
 
-    /// The amplitudes when one coordinate moves by one, whose motion the others resist by these forces.
+    /// The amplitudes for a unit motion of one coordinate, which the others resist by these forces.
     pub(super) fn moved_by(&self, g: &mut Graph, moved: usize, forces: &Load) -> Vec<Complex> {
         let one = Complex::one(g);
         let Some(rows) = self.dense() else {
@@ -109,7 +109,7 @@ impl Compliance {
         amplitudes
     }
 
-    /// The response of a combination to a unit force on each coordinate; nothing where no adjoint is at hand.
+    /// The response of a combination to a unit force on each coordinate; `None` without adjoints.
     pub(super) fn adjoint(&self, g: &mut Graph, combination: &[(CoordinateId, Expr)]) -> Option<Vec<Complex>> {
         let rows = self.inverse.as_ref()?;
         Some(rows.iter().map(|row| along(g, combination, row)).collect())

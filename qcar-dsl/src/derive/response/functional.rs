@@ -1,4 +1,4 @@
-//! Outputs as functions of the amplitudes.
+//! Outputs as functionals of the amplitudes.
 
 use super::change::Change;
 use super::load::by_source;
@@ -16,11 +16,11 @@ pub(super) struct Functional {
     /// (jω)ⁿ or the dynamic stiffness of a link.
     pub(super) factor: Complex,
     pub(super) combination: Vec<(CoordinateId, Expr)>,
-    /// What the combination is.
+    /// The combination.
     of: Of,
 }
 
-/// What the combination of an output is.
+/// The combination of an output.
 #[derive(Clone, Copy, PartialEq)]
 enum Of {
     Coordinate,
@@ -52,7 +52,7 @@ impl Functional {
         }
     }
 
-    /// What a force input adds to the force of a link by itself.
+    /// Direct contribution of a force input to the force of a link.
     pub(super) fn input(&self, links: &[Stiffness], source: Source) -> Option<Complex> {
         match self.of {
             Of::Force(link) => by_source(&links[link].inputs, source),
@@ -60,7 +60,7 @@ impl Functional {
         }
     }
 
-    /// How the output changes because its own factor and combination do.
+    /// Change of the output by its own factor and combination.
     pub(super) fn derivative(
         &self,
         g: &mut Graph,

@@ -7,7 +7,7 @@ use crate::derive::stiffness::Stiffness;
 use crate::derive::vectors::Source;
 use crate::expr::Graph;
 
-/// The force on each coordinate for a unit of a force input, while nothing moves.
+/// The force on each coordinate for a unit force input, without motion.
 pub(super) type Load = Vec<(usize, Complex)>;
 
 /// The entry of a force input.
@@ -25,7 +25,7 @@ pub(super) fn through_load(g: &mut Graph, values: &[Complex], load: &[(usize, Co
     })
 }
 
-/// What an input pushes by itself, less what the laws resist that it drives.
+/// The direct force of an input, minus that of the laws that use it.
 pub(super) fn load(model: &Checked, g: &mut Graph, links: &[Stiffness], input: u16) -> Load {
     let pushed = model.forces[input as usize].on.iter();
     let mut load: Load = pushed

@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 
-/// How something that can be seen changes with the estimated parameters.
+/// Change of an observable quantity by the estimated parameters.
 #[derive(Clone)]
 pub struct Seen {
     /// What it is.
@@ -12,7 +12,7 @@ pub struct Seen {
 }
 
 impl Seen {
-    /// Times a number.
+    /// Multiplies by a number.
     pub fn scaled(&self, factor: Complex64) -> Seen {
         Seen {
             value: self.value * factor,
@@ -20,7 +20,7 @@ impl Seen {
         }
     }
 
-    /// Over another.
+    /// Divides by another.
     pub fn over(&self, other: &Seen) -> Seen {
         let value = self.value / other.value;
         let changes = self.gradient.iter().zip(&other.gradient);

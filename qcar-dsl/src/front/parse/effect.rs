@@ -55,8 +55,8 @@ pub fn effect(tokens: &mut Tokens) -> Parsed<Effect> {
         forms: vec![],
     };
     let changes = inside.each(|tokens| match tokens.peek().as_deref() {
-        Some("source") => told(tokens, &mut effect.source, "source \"Author: Title, year\";"),
-        Some("shows") => told(tokens, &mut effect.shows, "shows \"how it shows in measurements\";"),
+        Some("source") => sentence(tokens, &mut effect.source, "source \"Author: Title, year\";"),
+        Some("shows") => sentence(tokens, &mut effect.shows, "shows \"how it shows in measurements\";"),
         Some("nuisance") => {
             tokens.any_word();
             effect.nuisance = true;
@@ -87,7 +87,7 @@ fn form(tokens: &mut Tokens) -> Parsed<Form> {
 }
 
 /// A sentence after its word.
-fn told(tokens: &mut Tokens, into: &mut String, example: &str) -> Parsed<Option<Change>> {
+fn sentence(tokens: &mut Tokens, into: &mut String, example: &str) -> Parsed<Option<Change>> {
     tokens.any_word();
     (*into, _) = tokens.text("a sentence", example)?;
     tokens.expect(";", example)?;

@@ -6,13 +6,13 @@ use crate::front::syntax::{Change, Effect, EffectParameter, Form, LawStatement, 
 /// The lines of an effect.
 pub fn effect_lines(effect: &Effect) -> Vec<String> {
     let head = format!("effect {} {}", effect.name.text, pattern(&effect.pattern));
-    let told = [("source", &effect.source), ("shows", &effect.shows)];
-    let told = told.into_iter().filter(|(_, text)| !text.is_empty());
-    let told = told.map(|(word, text)| format!("{word} {text:?};"));
+    let sentences = [("source", &effect.source), ("shows", &effect.shows)];
+    let sentences = sentences.into_iter().filter(|(_, text)| !text.is_empty());
+    let sentences = sentences.map(|(word, text)| format!("{word} {text:?};"));
     let nuisance = effect.nuisance.then(|| "nuisance;".to_string());
     let body = effect.body.iter().flat_map(change_lines);
     let forms = effect.forms.iter().flat_map(form_lines);
-    let lines = told.chain(nuisance).chain(body).chain(forms);
+    let lines = sentences.chain(nuisance).chain(body).chain(forms);
     block(&head, &effect.doc, lines.collect())
 }
 

@@ -1,26 +1,28 @@
-//! Sensors that are wired or mounted wrongly, or in another unit than is said, found by comparison with the other side of the car: in a sweep both sides move nearly alike.
+//! Finds sensors that are wired or mounted wrongly, or have another unit than declared, by comparison with the other
+//! side of the car: in a sweep both sides move nearly alike.
 
 use super::super::contents::{Channel, Run, Side};
 use super::super::finding::Finding;
 use super::super::history::History;
 
-/// Two sensors are alike or opposite where their correlation is above this, and neither below it.
+/// Correlation above which two sensors count as equal or opposite.
 const ALIKE: f64 = 0.5;
-/// By how much a sensor must resemble another place more than its own to be called swapped.
+/// Difference of correlations above which a sensor counts as swapped with that of another place.
 const CLEARLY: f64 = 0.1;
-/// What the unit of one sensor is to that of another for which it may be taken: g to m/s², and m to mm or kN to N.
+/// Ratios of units that may be confused: g to m/s², and m to mm or kN to N.
 const MISTAKEN: [f64; 2] = [9.80665, 1000.0];
-/// The ratio of two sensors is one of these within this part of it: no axle is so uneven.
+/// Relative tolerance of such a ratio: no axle is so asymmetric.
 const UNEVEN: f64 = 0.25;
 
-/// The sensors of one place on the left and on the right.
+/// The left and the right sensor of a place.
 struct Pair<'a> {
     left: (&'a Channel, &'a [f64]),
     right: (&'a Channel, &'a [f64]),
     correlation: f64,
 }
 
-/// Sensors of a sweep that move against their other side, those that resemble another place there, and those whose size is that in another unit.
+/// Sensors of a sweep that move against the other side, that resemble another place there, or whose amplitude suggests
+/// another unit.
 pub(super) fn of_sides(run: &Run, history: &History) -> Vec<Finding> {
     let pairs = pairs(history);
     let duration = (history.len() - 1) as f64 / history.sample_rate;
@@ -58,7 +60,7 @@ fn pairs(history: &History) -> Vec<Pair<'_>> {
     of(Side::Left).filter_map(pair).collect()
 }
 
-/// Pairs whose sides move against each other while those of more others move together.
+/// Pairs whose sides move against each other while most other pairs move together.
 fn opposite<'a, 'b>(pairs: &'b [Pair<'a>]) -> Vec<&'b Pair<'a>> {
     let together = pairs.iter().filter(|pair| pair.correlation > ALIKE).count();
     let against: Vec<&Pair> = pairs.iter().filter(|pair| pair.correlation < -ALIKE).collect();
@@ -86,7 +88,7 @@ fn swapped_with(a: &Pair, b: &Pair) -> String {
     )
 }
 
-/// What is to be said where both sides are alike but for the ratio of two units.
+/// Message if both sides differ by the ratio of two units only.
 fn in_other_units(pair: &Pair) -> Option<String> {
     let [left, right] =
         [pair.left.1, pair.right.1].map(|samples| about_line(samples).iter().map(|v| v * v).sum::<f64>());
@@ -100,7 +102,7 @@ fn in_other_units(pair: &Pair) -> Option<String> {
     })
 }
 
-/// How alike two signals are, about the lines through them: an offset or a drift is no motion.
+/// Correlation of two signals without their linear trends, since an offset or a drift is no motion.
 fn correlation(a: &[f64], b: &[f64]) -> f64 {
     let (a, b) = (about_line(a), about_line(b));
     let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();

@@ -1,4 +1,4 @@
-//! The `[[run]]` sections: what each kind of test needs.
+//! The `[[run]]` sections with the keys of each kind of test.
 
 use std::path::Path;
 
@@ -10,16 +10,16 @@ use super::sensors::Sensor;
 use super::{CURVE, DYNAMIC_CURVE, FORCES};
 use crate::spelling;
 
-/// What a run is read beside.
+/// Context for reading the runs.
 pub(super) struct Known<'a> {
     pub folder: &'a Path,
     pub files: &'a Files,
-    /// `None` where something is wrong with them.
+    /// `None` if they have problems.
     pub roads: Option<&'a [Road]>,
     pub sensors: Option<&'a [Sensor]>,
 }
 
-/// Which keys a run may have depends on its kind: without a known kind, none of them is refused.
+/// Reads a run. Its keys depend on its kind, so no key is refused if the kind is unknown.
 pub(super) fn run(section: &Section<'_>, known: &Known<'_>) -> Option<Run> {
     let (file, role) = (section.text("file"), section.choice("role", Role::NAMES));
     let (name, without) = (section.optional_text("name"), without(section, known));
@@ -46,7 +46,7 @@ pub(super) fn run(section: &Section<'_>, known: &Known<'_>) -> Option<Run> {
     })
 }
 
-/// The sensors that are not taken from a run.
+/// Sensors that are not read from a run.
 fn without(section: &Section<'_>, known: &Known<'_>) -> Vec<String> {
     let without = section.texts("without");
     let names: Vec<&str> = known
@@ -70,12 +70,12 @@ fn without(section: &Section<'_>, known: &Known<'_>) -> Vec<String> {
     without
 }
 
-/// Whether a file may be a plain table.
+/// True if a file may be a plain table.
 pub(super) fn is_table(file: &str) -> bool {
     file.ends_with(".csv") || file.ends_with(".csv.gz")
 }
 
-/// The rate of a run, Hz. In the file of a rig, `file`, it is the highest among its channels unless it is stated.
+/// Sample rate of a run, Hz. For a measured `file` it is the highest of its channels unless it is given.
 fn sample_rate(section: &Section<'_>, known: &Known<'_>, file: Option<&String>) -> Option<f64> {
     let Some(file) = file.filter(|_| !section.has("sample_rate")) else {
         return section.positive("sample_rate", "Hz");
@@ -85,7 +85,7 @@ fn sample_rate(section: &Section<'_>, known: &Known<'_>, file: Option<&String>) 
     highest.map_err(|error| section.adopt(error)).ok()
 }
 
-/// Reads a test, whose file is named where it is no plain table.
+/// Reads a test; its file is given if it is no plain table.
 type ReadTest = fn(&Section<'_>, &Known<'_>, Option<&String>) -> Option<Test>;
 
 /// The kinds with the columns that a curve of the kind has.

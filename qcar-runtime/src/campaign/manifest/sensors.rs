@@ -1,4 +1,4 @@
-//! The `[[channel]]` sections of a campaign and of the file that campaigns share.
+//! The `[[channel]]` sections of a campaign and of a file that campaigns share.
 
 use std::path::Path;
 
@@ -7,11 +7,11 @@ use super::super::fields::{Document, Section};
 use super::super::tap;
 use super::each;
 
-/// A channel, and where its values come from.
+/// A channel with its source.
 pub(super) struct Sensor {
     pub channel: Channel,
     pub tap: Tap,
-    /// Whether the tap says more than a plain table needs.
+    /// True if the source has keys that a plain table does not need.
     pub mapped: bool,
 }
 

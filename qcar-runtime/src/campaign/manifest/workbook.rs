@@ -7,7 +7,7 @@ use super::super::fields::Section;
 use super::super::recorded::Files;
 use super::super::workbook::{Entry, Workbook};
 
-/// The workbook, where one is named and can be read.
+/// The workbook; `None` if none is named or it cannot be read.
 pub(super) fn named(folder: &Path, top: &Section<'_>, files: &Files) -> Option<Workbook> {
     let axle = top.optional_text("axle");
     let Some(named) = top.optional_text("workbook") else {
@@ -25,7 +25,7 @@ pub(super) fn named(folder: &Path, top: &Section<'_>, files: &Files) -> Option<W
     read.map_err(|error| top.adopt(error)).ok()
 }
 
-/// The model of the campaign, which its workbook may name. One that could not be read might have.
+/// The model of the campaign, which its workbook may name. An unreadable workbook counts as one that names it.
 pub(super) fn model(top: &Section<'_>, workbook: Option<&Workbook>) -> Option<String> {
     match workbook {
         None if top.has("workbook") => top.optional_text("model"),
@@ -59,7 +59,7 @@ impl Workbook {
         facts
     }
 
-    /// `facts` are what the campaign states of the vehicle, which may be parameters of the model too.
+    /// `facts` are the vehicle data of the campaign, which may be parameters of the model.
     pub(super) fn with_parameters(&self, mut parameters: Vec<Parameter>, facts: &[(String, f64)]) -> Vec<Parameter> {
         let is_new = |entry: &&Entry| {
             let stated = parameters.iter().map(|own| &own.name);

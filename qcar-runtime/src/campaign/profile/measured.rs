@@ -1,4 +1,4 @@
-//! Which channels of a measured file are the profile of a road.
+//! The channels of a measured file that are a road profile.
 
 use std::path::Path;
 
@@ -9,24 +9,25 @@ use super::super::recorded::{problem, recording};
 use super::{RoadSamples, chords};
 use crate::error::{InputError, Place, Problem};
 
-/// What a channel of distances along a road is called, in small letters.
+/// Names of a channel of distances along a road, in lower case.
 const DISTANCES: [&str; 11] = [
     "x", "u", "s", "distance", "dist", "station", "chainage", "odometer", "position", "weg", "strecke",
 ];
-/// What one of slopes is called, whose samples are those of the segment to their right.
+/// Names of a channel of slopes; a sample is the slope of the segment to its right.
 const SLOPE: &str = "slope";
-/// Powers of kilogram, metre and second of a length.
+/// Exponents of kilogram, metre and second of a length.
 const LENGTH: [i32; 3] = [0, 1, 0];
 const PER_CENT: f64 = 0.01;
 
 impl RoadSamples {
-    /// The profile in a measured file of any format: a channel of distances such as `x`, `u` or `distance`, and one of heights,
-    /// which `source` names (a pattern, or `group/name`) where the file has several. Numbers without a unit are m. A channel `slope`
-    /// (1, m/m or %) says where the heights step that are taken without `source`; without, it goes straight from sample to sample.
+    /// The profile in a measured file of any format: a channel of distances such as `x`, `u` or `distance`, and one of
+    /// heights, selected by `source` (a pattern, or `group/name`) if the file has several. Numbers without a unit are
+    /// m. A channel `slope` (1, m/m or %) states steps of the default heights; without it the road is straight between
+    /// samples.
     ///
     /// # Errors
-    /// A file that cannot be read, channels that are not there, of another quantity, of unlike length or not the only ones, samples
-    /// without a value, distances that do not increase.
+    /// Fails if the file cannot be read, if a channel is missing, ambiguous, of another quantity or another length, if
+    /// samples have no value, or if distances do not increase.
     pub fn measured(file: &Path, source: Option<&str>) -> Result<Self, InputError> {
         Self::of(
             file,
@@ -35,7 +36,7 @@ impl RoadSamples {
         )
     }
 
-    /// The same of what a file holds.
+    /// The profile in the contents of a file.
     pub(super) fn of(file: &Path, recording: &Recording, source: Option<&str>) -> Result<Self, InputError> {
         let distances = distances(file, recording)?;
         let heights = heights(file, recording, distances, source)?;
@@ -68,7 +69,7 @@ fn of(signal: &Signal) -> Place {
     Place::Channel(signal.full_name(), None)
 }
 
-/// A length, also where no unit is stated.
+/// True for a length, or for numbers without a unit.
 fn length(signal: &Signal) -> Option<Si> {
     let stated = match signal.unit.as_str() {
         "" => "m",
@@ -108,7 +109,7 @@ fn listed(signals: &[&Signal]) -> String {
     names.join(", ")
 }
 
-/// The channels that may be heights: `z` alone, where there is one, else all other lengths.
+/// Possible channels of heights: `z` alone if it exists, otherwise all other lengths.
 fn candidates(recording: &Recording) -> Vec<&Signal> {
     let is_height =
         |signal: &&Signal| !is_called(signal, &DISTANCES) && !is_called(signal, &[SLOPE]) && length(signal).is_some();
@@ -119,12 +120,12 @@ fn candidates(recording: &Recording) -> Vec<&Signal> {
     }
 }
 
-/// Whether these heights are those that are taken where none are chosen.
+/// True if these are the default heights.
 fn is_default(recording: &Recording, heights: &Signal) -> bool {
     matches!(candidates(recording)[..], [only] if std::ptr::eq(only, heights))
 }
 
-/// The slopes that the file states, if it does.
+/// The slopes in the file; `None` without any.
 fn slopes(file: &Path, recording: &Recording, distances: usize) -> Result<Option<Vec<f64>>, InputError> {
     let mut named = recording.signals.iter().filter(|signal| is_called(signal, &[SLOPE]));
     let Some(signal) = named.next() else {

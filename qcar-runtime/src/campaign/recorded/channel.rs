@@ -16,22 +16,22 @@ use super::values::Scaling;
 use super::window::{Span, clock};
 use crate::error::{InputError, Place, Problem};
 
-/// A channel whose values are in SI. They are computed where they are wanted, since a recording may be much longer than a run.
+/// A channel in SI. Values are computed on request, since a recording may be much longer than a run.
 pub(super) struct Channel<'a> {
     pub tap: &'a Tap,
     signal: &'a Signal,
     base: TimeBase,
-    /// As the file has them; of samples that came unevenly, on even instants.
+    /// Samples of the file; samples at uneven times are resampled.
     samples: Cow<'a, Samples>,
     scaling: Scaling,
-    /// Hz.
+    /// Sample rate, Hz.
     pub rate: f64,
-    /// The shortest and the longest step of samples that came unevenly, s.
+    /// Shortest and longest step of uneven samples, s.
     pub uneven: Option<(f64, f64)>,
 }
 
 impl<'a> Channel<'a> {
-    /// The channel that a tap means. One whose times the file does not say has the declared rate.
+    /// The channel that a tap selects. Without times in the file it has the declared rate.
     pub fn tapped(
         file: &Path,
         recording: &'a Recording,
@@ -66,7 +66,7 @@ impl<'a> Channel<'a> {
         })
     }
 
-    /// A column of a table without times is as long as it is filled.
+    /// A column of a table without times ends at its last value.
     pub fn up_to_its_last_value(mut self) -> Self {
         if self.signal.time == TimeBase::Unknown {
             let last = self.signal.samples.iter().rposition(|value| value.is_finite());
@@ -84,7 +84,7 @@ impl<'a> Channel<'a> {
             .collect()
     }
 
-    /// Its samples in the window, with those around it that a filter to `rate` needs.
+    /// Its samples in the window, with the samples around it that a filter to `rate` needs.
     pub fn even(&self, file: &Path, rate: f64, span: Span) -> Result<Even, InputError> {
         let margin = (reach(self.rate, rate) * self.rate).ceil() + 1.0;
         let margin = margin.min(self.samples.len() as f64) as usize;
@@ -103,7 +103,7 @@ impl<'a> Channel<'a> {
         Err(Problem::new(file, self.place(), "infinite values after scaling", expected, remedy).into())
     }
 
-    /// To be named in errors.
+    /// Name for error messages.
     pub fn place(&self) -> Place {
         Place::Channel(self.signal.full_name(), None)
     }

@@ -1,4 +1,4 @@
-//! Even samples without gaps.
+//! Samples at a constant rate, without gaps.
 
 use std::ops::Range;
 
@@ -9,31 +9,31 @@ use qcar_signals::signal::TimeBase;
 use super::super::steps;
 use super::uneven::Pace;
 
-/// Relative distance from whole hertz within which a clock is meant to have them.
+/// Relative distance from a whole number of hertz within which a rate is rounded to it.
 const WHOLE: f64 = 1e-6;
-/// Parts of a sample by which a time may miss an end of the window.
+/// Tolerance of a time at the ends of the window, in samples.
 const SLACK: f64 = 1e-3;
 
-/// A part of a channel without any gap.
+/// A part of a channel without gaps.
 pub(super) struct Even {
-    /// The samples in the window, and those around it that the filter may need.
+    /// Samples in the window, and those around it that a filter may need.
     pub samples: Range<usize>,
-    /// Their instants.
+    /// Their times.
     pub grid: Grid,
-    /// Those of them in the window, counted from the first.
+    /// Positions of those in the window, counted from the first.
     pub inside: Range<usize>,
 }
 
-/// Why a window holds no even samples.
+/// Reasons why a window has no even samples.
 pub(super) struct Broken {
-    /// s, where it is a moment.
+    /// Time of the fault, s, if it is at one instant.
     pub at: Option<f64>,
     pub found: String,
     pub expected: String,
     pub remedy: &'static str,
 }
 
-/// The time of a sample, s; a base without times counts samples.
+/// Time of a sample, s; without times it is the number of the sample.
 pub(super) fn time(base: &TimeBase, at: usize) -> f64 {
     match base {
         TimeBase::Even { start, step } => start + at as f64 * step,
@@ -42,7 +42,8 @@ pub(super) fn time(base: &TimeBase, at: usize) -> f64 {
     }
 }
 
-/// Samples a second: the declared rate where the times agree with it, else theirs; `None` with less than two samples.
+/// Samples per second: the declared rate if the times agree with it, otherwise theirs; `None` for less than two
+/// samples.
 pub(super) fn rate(base: &TimeBase, count: usize, declared: Option<f64>) -> Option<f64> {
     let own = match base {
         TimeBase::Even { step, .. } => 1.0 / step,
@@ -59,7 +60,7 @@ pub(super) fn rate(base: &TimeBase, count: usize, declared: Option<f64>) -> Opti
         .filter(|rate| rate.is_finite() && *rate > 0.0)
 }
 
-/// Of the steps that are one sample long.
+/// Mean rate of the steps that are one sample long.
 fn usual_rate(times: &[f64]) -> f64 {
     if steps::all_alike(times) {
         let sum: f64 = times.windows(2).map(|two| two[1] - two[0]).sum();
@@ -72,7 +73,7 @@ fn usual_rate(times: &[f64]) -> f64 {
 }
 
 impl Even {
-    /// The samples from `from` to `to` (s; the whole channel without), with up to `margin` more at each side.
+    /// Samples from `from` to `to` (s; `None` for the whole channel), with up to `margin` more on each side.
     pub fn new(
         samples: &Samples,
         base: &TimeBase,
@@ -108,17 +109,17 @@ impl Even {
         })
     }
 
-    /// The instant of the first sample in the window, s.
+    /// Time of the first sample in the window, s.
     pub fn start(&self) -> f64 {
         self.grid.time(self.inside.start)
     }
 
-    /// The instant of the last sample in the window, s.
+    /// Time of the last sample in the window, s.
     pub fn end(&self) -> f64 {
         self.grid.time(self.inside.end - 1)
     }
 
-    /// The instants in the window.
+    /// Times of the samples in the window.
     pub fn in_window(&self) -> Grid {
         Grid {
             start: self.start(),
@@ -127,14 +128,14 @@ impl Even {
         }
     }
 
-    /// The index of the sample that is taken at an instant, if one is.
+    /// Position of the sample at a time; `None` if there is none.
     pub fn sample_at(&self, instant: f64) -> Option<usize> {
         let place = (instant - self.grid.start) * self.grid.rate;
         ((place - place.round()).abs() <= SLACK).then_some(place.round() as usize)
     }
 }
 
-/// The indices of the samples in the window, of which there are at least two.
+/// Positions of the samples in the window; at least two.
 fn inside(
     count: usize,
     base: &TimeBase,
@@ -176,7 +177,7 @@ fn inside(
     })
 }
 
-/// Whether the time before a sample is not that of one step.
+/// True if the step before a sample is not one sample long.
 fn is_gap(base: &TimeBase, at: usize, rate: f64) -> bool {
     matches!(base, TimeBase::Times(_)) && !steps::is_one(time(base, at) - time(base, at - 1), rate)
 }

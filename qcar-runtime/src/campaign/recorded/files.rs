@@ -1,4 +1,4 @@
-//! Measured files of any format, each read once for all the runs that are parts of it, unless they are very large.
+//! Measured files of any format. Each is read once for all its runs, unless it is very large.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -13,7 +13,7 @@ use qcar_signals::signal::Recording;
 use crate::bounded;
 use crate::error::{InputError, Place, Problem};
 
-/// Samples that are kept for further runs, half a gigabyte of them; a file with more is forgotten when the next is read.
+/// Number of samples that are kept for further runs, half a gigabyte. A larger file is read again for the next run.
 const KEPT: usize = 1 << 26;
 
 /// The files of a campaign.
@@ -22,9 +22,9 @@ pub(in crate::campaign) struct Files {
     read: RefCell<HashMap<PathBuf, Known>>,
 }
 
-/// What was read of a file.
+/// Contents of a file.
 struct Known {
-    /// Names and patterns of the channels whose samples are there; all of them without.
+    /// Names and patterns of the channels with samples; `None` for all.
     wanted: Option<Vec<String>>,
     recording: Result<Rc<Recording>, InputError>,
 }
@@ -48,13 +48,13 @@ impl Files {
         self.keep(file, None, known.unwrap_or_else(|| self.read(file, &Wanted::All)))
     }
 
-    /// The same with the samples of at least those channels that these names and patterns may mean: a long recording has many more
-    /// than a campaign names.
+    /// The same with the samples of at least the channels that these names and patterns select, since a long recording
+    /// has many more than a campaign needs.
     pub fn with(&self, file: &Path, sources: &[String]) -> Result<Rc<Recording>, InputError> {
         let known = self.read.borrow_mut().remove(file);
         match known {
             Some(known) if known.has(sources) => self.keep(file, known.wanted, known.recording),
-            // A run may name more than those before it.
+            // A later run may name more channels.
             known => {
                 let mut wanted = known.and_then(|known| known.wanted).unwrap_or_default();
                 wanted.extend_from_slice(sources);
@@ -100,14 +100,14 @@ fn samples(recording: &Recording) -> usize {
     recording.signals.iter().map(|signal| signal.samples.len()).sum()
 }
 
-/// What to do about a file of a campaign that is not there.
+/// Remedy for a missing file of a campaign.
 pub(in crate::campaign) const BESIDE_MANIFEST: &str =
     "correct the path (relative to the folder of campaign.toml), or put the file there";
 
-/// The recording in a file; `wrong_path` is what to do where it is not there.
+/// The recording in a file; `wrong_path` is the remedy if the file is missing.
 ///
 /// # Errors
-/// A file that cannot be read.
+/// Fails if the file cannot be read.
 pub(in crate::campaign) fn recording(file: &Path, wrong_path: &str) -> Result<Recording, InputError> {
     wanted_recording(file, wrong_path, &Wanted::All)
 }
@@ -117,7 +117,7 @@ fn wanted_recording(file: &Path, wrong_path: &str, wanted: &Wanted<'_>) -> Resul
     channels(&content, wanted).map_err(|fault| problem(file, &fault).into())
 }
 
-/// A fault of a file as the workbench reports it.
+/// Converts an error of a reader to an error of the workbench.
 pub(in crate::campaign) fn problem(file: &Path, fault: &Fault) -> Problem {
     let place = match (&fault.place, &fault.channel) {
         (Within::File, None) => Place::File,

@@ -1,4 +1,4 @@
-//! The channels of a run at one rate, all from the same instant to the same instant.
+//! The channels of a run at one rate, over the same time.
 
 use std::path::Path;
 
@@ -12,10 +12,10 @@ use super::even::Even;
 use super::window::Span;
 use crate::error::{InputError, Place, Problem};
 
-/// A rate that is so many times the highest among the channels is a slip, and would fill the memory with nothing new.
+/// A rate above this multiple of the highest rate of the channels is an error, and would only fill the memory.
 const MOST: f64 = 10.0;
 
-/// The channels of a run, and the instants that they are brought to.
+/// The channels of a run, and the times to which they are resampled.
 pub(super) struct Together<'a> {
     channels: &'a [Channel<'a>],
     even: Vec<Even>,
@@ -23,7 +23,7 @@ pub(super) struct Together<'a> {
 }
 
 impl<'a> Together<'a> {
-    /// At `rate`, or at the highest among the channels.
+    /// Resamples to `rate`, or to the highest rate of the channels.
     pub fn new(file: &Path, channels: &'a [Channel<'a>], span: Span, rate: Option<f64>) -> Result<Self, InputError> {
         let highest = channels.iter().map(|channel| channel.rate).fold(0.0, f64::max);
         let rate = rate.unwrap_or(highest);
@@ -44,14 +44,14 @@ impl<'a> Together<'a> {
         Ok(Together { channels, even, grid })
     }
 
-    /// Names and samples, all of one length.
+    /// Names and samples; all have one length.
     pub fn columns(&self) -> Vec<(String, Vec<f64>)> {
         let both = self.channels.iter().zip(&self.even);
         both.map(|(channel, even)| (channel.tap.name.clone(), on_grid(channel, even, self.grid)))
             .collect()
     }
 
-    /// What the samples in the window show to be odd. Curves dwell and creep as they should.
+    /// Flaws of the samples in the window. Curves may dwell and creep.
     pub fn findings(&self, run: &Run) -> Vec<Finding> {
         if run.test.sample_rate().is_none() {
             return Vec::new();
@@ -78,13 +78,13 @@ impl<'a> Together<'a> {
     }
 }
 
-/// The instants that all channels cover, on samples of the first one that has the rate.
+/// Times that all channels cover, at the samples of the first channel with this rate.
 fn grid(file: &Path, channels: &[Channel<'_>], even: &[Even], rate: f64) -> Result<Grid, InputError> {
     let latest = |of: fn(&Even) -> f64| even.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
     let earliest = |of: fn(&Even) -> f64| even.iter().map(of).fold(f64::INFINITY, f64::min);
     let (start, end) = (latest(|even| even.start()), earliest(|even| even.end()));
     let (first, last) = (earliest(|even| even.start()), latest(|even| even.end()));
-    // Channels of several rates begin and end within a sample or two of each other.
+    // Channels of different rates begin and end within a sample or two of each other.
     let apart = 2.0 / channels.iter().map(|channel| channel.rate).fold(rate, f64::min);
     let ends_early = even.iter().position(|even| last - even.end() > apart);
     let begins_late = even.iter().position(|even| even.start() - first > apart);
@@ -106,7 +106,7 @@ fn grid(file: &Path, channels: &[Channel<'_>], even: &[Even], rate: f64) -> Resu
     Ok(Grid { start, rate, count })
 }
 
-/// The values at the instants of the grid: as they are where they were taken then, else through the filter.
+/// Values at these times: unchanged if they were sampled there, otherwise filtered.
 fn on_grid(channel: &Channel<'_>, even: &Even, grid: Grid) -> Vec<f64> {
     let values = channel.values(even.samples.clone());
     let as_they_are = even.sample_at(grid.start).filter(|_| even.grid.rate == grid.rate);

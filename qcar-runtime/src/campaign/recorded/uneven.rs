@@ -5,24 +5,23 @@ use qcar_signals::signal::TimeBase;
 
 use super::super::steps;
 
-/// The share of steps of another length than the usual one above which a channel is uneven by its nature, and not a record
-/// with gaps.
+/// Share of steps of unusual length above which a channel counts as uneven; below it, it is a record with gaps.
 const SHARE: f64 = 0.05;
-/// So many usual steps without a sample are a gap, across which no line is drawn.
+/// Number of usual steps without a sample that count as a gap, which is not interpolated.
 const GAP: f64 = 10.0;
 
-/// The steps of a channel that is uneven by its nature, gaps aside.
+/// Steps of an uneven channel without gaps.
 pub(super) struct Pace {
-    /// Steps a second.
+    /// Mean number of steps per second.
     pub rate: f64,
-    /// The shortest and the longest, s.
+    /// Shortest and longest step, s.
     pub steps: (f64, f64),
-    /// What is longer is a gap, s.
+    /// Step length above which there is a gap, s.
     gap: f64,
 }
 
 impl Pace {
-    /// Of these times; `None` where they come evenly.
+    /// Steps of these times; `None` if they are even.
     pub fn of(times: &[f64]) -> Option<Pace> {
         if steps::all_alike(times) {
             return None;
@@ -43,22 +42,22 @@ impl Pace {
     }
 }
 
-/// Even samples of an uneven channel.
+/// An uneven channel, resampled.
 pub(super) struct Resampled {
     pub base: TimeBase,
-    /// In the unit of the file; not a number within a gap.
+    /// Values in the unit of the file; NaN in a gap.
     pub values: Vec<f64>,
-    /// The shortest and the longest step, s, gaps aside.
+    /// Shortest and longest step without gaps, s.
     pub steps: (f64, f64),
 }
 
-/// The values of an uneven channel at `rate`, Hz; `None` of a channel that is even or that does not say its times.
+/// Values of an uneven channel at `rate`, Hz; `None` for an even channel or one without times.
 pub(super) fn resampled(base: &TimeBase, values: &Samples, rate: f64) -> Option<Resampled> {
     let TimeBase::Times(times) = base else { return None };
     let pace = Pace::of(times)?;
     let (&start, &end) = (times.first()?, times.last()?);
     let count = ((end - start) * rate + 1e-3).floor() as usize + 1;
-    // Far more instants than samples are mostly gaps, and would fill the memory.
+    // If there are many more times than samples, most are in gaps and would only fill the memory.
     (count as f64 <= GAP * times.len() as f64).then_some(())?;
     let mut after = 1;
     let at = |k: usize| {

@@ -11,19 +11,19 @@ use super::super::unit::examples;
 use super::even::time;
 use crate::error::{InputError, Place, Problem};
 
-/// How the samples of a channel become the values of a tap, in SI; what is missing stays not a number.
+/// Conversion of the samples of a channel to SI; missing values stay NaN.
 #[derive(Clone, Copy)]
 pub(super) struct Scaling {
     scale: f64,
     offset: f64,
     sign: f64,
     si: Si,
-    /// What is taken off at last, in SI.
+    /// Offset subtracted last, SI.
     zero: f64,
 }
 
 impl Scaling {
-    /// What a tap says, and the file where that says nothing.
+    /// The conversion of a tap; what the tap does not give comes from the file.
     pub fn of(file: &Path, signal: &Signal, base: &TimeBase, tap: &Tap) -> Result<Self, InputError> {
         let mut scaling = Scaling {
             scale: tap.scale.unwrap_or(1.0),
@@ -68,8 +68,8 @@ impl Scaling {
     }
 }
 
-/// The unit of the scaled values: the declared one, else the file's. Where both are known and differ, somebody is wrong, unless
-/// a scale says that the values of the file are not to be taken as they are.
+/// Unit of the scaled values: the declared one, otherwise that of the file. If both are known and differ, one of them
+/// is wrong, unless the tap has a scale.
 fn unit(file: &Path, signal: &Signal, tap: &Tap) -> Result<Si, InputError> {
     let stated = in_si(&signal.unit).filter(|unit| of_quantity(Some(*unit), tap.si));
     let refuse = |found: String, expected: String, remedy: String| {

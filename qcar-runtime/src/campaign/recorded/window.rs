@@ -1,4 +1,4 @@
-//! When a run begins and ends in its recording.
+//! Start and end of a run in its recording.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ use crate::error::{InputError, Place, Problem};
 pub(super) struct Span {
     pub from: Option<f64>,
     pub to: Option<f64>,
-    /// Where the run's own time begins; on the recording's clock without.
+    /// Zero of the run's own time; `None` for the clock of the recording.
     pub zero: Option<f64>,
 }
 
@@ -34,13 +34,13 @@ impl Span {
         })
     }
 
-    /// Both ends, as samples are chosen by them.
+    /// Both ends, for the selection of samples.
     pub fn ends(self) -> (Option<f64>, Option<f64>) {
         (self.from, self.to)
     }
 }
 
-/// The time of the first sample above the value, after one that is not.
+/// Time of the first sample above the threshold after one that is not.
 fn moment(file: &Path, recording: &Recording, trigger: &Trigger, declared: Option<f64>) -> Result<f64, InputError> {
     let signal = recording
         .find(&trigger.channel)
@@ -70,7 +70,7 @@ fn moment(file: &Path, recording: &Recording, trigger: &Trigger, declared: Optio
     })
 }
 
-/// When the samples were taken; where the file does not say, at the declared rate from zero on.
+/// Times of the samples; without times in the file, from zero at the declared rate.
 pub(super) fn clock(base: &TimeBase, declared: Option<f64>) -> Option<TimeBase> {
     match base {
         TimeBase::Unknown => declared.map(|rate| TimeBase::Even {

@@ -1,4 +1,4 @@
-//! The named cells of a workbook: numbers with their units, and words.
+//! The named cells of a workbook: numbers with units, and words.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use super::super::unit::{Declared, examples};
 use super::{AXLES, Entry};
 use crate::error::{InputError, Place, Problem};
 
-/// The named cells, and what is wrong with them.
+/// The named cells and their problems.
 pub(super) struct Cells<'a> {
     file: &'a Path,
     recording: &'a Recording,
@@ -28,7 +28,7 @@ impl<'a> Cells<'a> {
         }
     }
 
-    /// The axle that is meant.
+    /// The axle to read.
     pub fn axle(&self, wanted: Option<&str>) -> Result<String, InputError> {
         let named = wanted.map(String::from).or_else(|| self.text("axle"));
         match named {
@@ -44,7 +44,7 @@ impl<'a> Cells<'a> {
         }
     }
 
-    /// A word, `None` where there is none.
+    /// A word; `None` for an empty cell.
     pub fn text(&self, name: &str) -> Option<String> {
         match &self.cell(name)?.value {
             Value::Text(text) => Some(text.trim().into()),
@@ -53,7 +53,7 @@ impl<'a> Cells<'a> {
         }
     }
 
-    /// What is known of the vehicle on an axle, and what follows from the whole of it where a cell is empty.
+    /// Vehicle data of an axle; an empty cell is computed from data of the whole vehicle.
     pub fn facts(&mut self, axle: &str) -> Vec<Entry> {
         let facts = FACTS.into_iter().zip(FACT_UNITS);
         facts
@@ -64,7 +64,7 @@ impl<'a> Cells<'a> {
             .collect()
     }
 
-    /// Half of the vehicle, its share on an axle, and the wheel of the other one.
+    /// Half of the vehicle, the share of an axle, and the wheel load of the other one.
     fn derived(&mut self, axle: &str, name: &str) -> Option<Entry> {
         let half = |mass: Entry| Entry {
             name: name.into(),
@@ -109,7 +109,7 @@ impl<'a> Cells<'a> {
         self.recording.scalars.iter().find(|cell| cell.name == name)
     }
 
-    /// A value with its unit, and what stands beside it; nothing where the cell is empty or wrong.
+    /// A value with its unit and neighbouring cells; `None` if the cell is empty or wrong.
     fn entry(&mut self, cell: &str, name: &str, kind: Option<&str>) -> Option<Entry> {
         let own = self.cell(cell)?;
         if own.value == Value::Empty {
@@ -137,7 +137,7 @@ impl<'a> Cells<'a> {
         })
     }
 
-    /// The bounds of a value, in its unit; nothing unless both are there.
+    /// The bounds of a value, in its unit; `None` unless both are given.
     fn range(&mut self, cell: &str, value: f64, kind: Option<&str>) -> Option<(f64, f64)> {
         let [lower, upper] = ["lower", "upper"].map(|end| {
             let cell = self
@@ -210,11 +210,11 @@ impl<'a> Cells<'a> {
     }
 
     fn is_yes(&self, name: &str) -> bool {
-        let said = self.text(name).unwrap_or_default().to_lowercase();
-        ["yes", "true", "1"].contains(&said.as_str())
+        let word = self.text(name).unwrap_or_default().to_lowercase();
+        ["yes", "true", "1"].contains(&word.as_str())
     }
 
-    /// Notes what is wrong at a place.
+    /// Records a problem at a cell.
     pub fn wrong(&mut self, place: Place, found: String, expected: impl Into<String>, remedy: &str) {
         self.problems
             .push(Problem::new(self.file, place, found, expected, remedy));

@@ -1,19 +1,19 @@
 //! Finds the change at one place that explains the responses of all sensors best, line by line.
 //!
-//! A complex change q of a parameter changes all responses along their derivative by that parameter, times `q / (1 + q
-//! h)` with the compliance h of the place. The scalar is fitted first, line by line. q follows from it, and is smooth
-//! even near a mode, where the scalar is not.
+//! A complex change q of a parameter changes each response by its derivative by that parameter times `q / (1 + q h)`,
+//! where h is the compliance of the place. This scalar is fitted first, line by line. q follows from it. Unlike the
+//! scalar, q is smooth near a mode.
 
 use nalgebra::Complex;
 
-use super::kappa::{Kappa, KappaRun, Place};
+use super::missing_stiffness::{MissingStiffness, Place, RunStiffness};
 use super::straight::Straight;
 use crate::discover::observe::{Evidence, Kind, Prediction, Series};
 use crate::discover::posterior::Refit;
 use crate::transmissibility::Point;
 
-/// Lines on each side over which a change is taken as straight. A smooth law hardly curves over them, while chance
-/// errors average out.
+/// Lines on each side over which q is fitted by a straight line. A smooth law hardly curves over them, and noise averages
+/// out.
 const SMOOTH: usize = 2;
 
 /// Direction of the response change.
@@ -40,7 +40,7 @@ struct SensorLines {
     sensor: Point,
     sigma: Vec<f64>,
     residual: Vec<Complex<f64>>,
-    shown: Vec<Complex<f64>>,
+    reading: Vec<Complex<f64>>,
     slopes: Vec<Vec<Complex<f64>>>,
 }
 
@@ -71,7 +71,7 @@ impl Lines {
     }
 
     /// Sum of the squared normalised residuals.
-    pub fn left(&self) -> f64 {
+    pub fn squared_residual(&self) -> f64 {
         let of_sensor = |sensor: &SensorLines| {
             let lines = sensor.residual.iter().zip(&sensor.sigma);
             lines
@@ -107,18 +107,18 @@ impl Lines {
     }
 
     /// Missing dynamic stiffness at a place; `unit` converts a parameter change to a dynamic stiffness.
-    pub fn kappa(
+    pub fn missing_stiffness(
         &self,
         place: Place,
         direction: &Direction,
         compliance: &[Vec<Complex<f64>>],
         unit: impl Fn(f64) -> Complex<f64>,
-    ) -> Kappa {
+    ) -> MissingStiffness {
         let runs = self.runs.iter().zip(compliance);
         let each: Vec<Vec<Estimate>> = runs.map(|(run, h)| run.changes(direction, h)).collect();
         let common = mean(&each);
         let all = vec![common; each.len()];
-        Kappa {
+        MissingStiffness {
             place,
             ceiling: self.explained(direction, compliance, &each),
             common: self.explained(direction, compliance, &all),
@@ -126,7 +126,7 @@ impl Lines {
                 .runs
                 .iter()
                 .zip(&each)
-                .map(|(run, changes)| run.kappa(changes, &unit))
+                .map(|(run, changes)| run.missing_stiffness(changes, &unit))
                 .collect(),
         }
     }
@@ -150,13 +150,13 @@ impl Lines {
     }
 }
 
-/// Weighted mean of the runs for each line. Runs share one grid as far as they reach.
+/// Weighted mean of the runs for each line. All runs have the grid of the longest, or its beginning.
 fn mean(each: &[Vec<Estimate>]) -> Vec<Estimate> {
     let longest = each.iter().map(Vec::len).max().unwrap_or(0);
     let of_line = |line: usize| {
         let mut sums = Straight::default();
-        let said = each.iter().filter_map(|run| run.get(line));
-        said.for_each(|&(value, sigma)| sums.add(0.0, Complex::ONE, value, sigma));
+        let of_runs = each.iter().filter_map(|run| run.get(line));
+        of_runs.for_each(|&(value, sigma)| sums.add(0.0, Complex::ONE, value, sigma));
         sums.solve()
     };
     (0..longest).map(of_line).collect()
@@ -166,28 +166,28 @@ impl Direction {
     fn of<'a>(&self, lines: &'a SensorLines) -> Option<&'a [Complex<f64>]> {
         match self {
             Direction::Slope(column) => Some(&lines.slopes[*column]),
-            Direction::Sensor(sensor) => (lines.sensor == *sensor).then_some(&lines.shown),
+            Direction::Sensor(sensor) => (lines.sensor == *sensor).then_some(&lines.reading),
         }
     }
 }
 
 impl SensorLines {
     fn new(refit: &Refit, evidence: &Evidence, series: &Series, prediction: &Prediction) -> Self {
-        let shown = refit
+        let reading = refit
             .nuisance
-            .show(evidence, series, &prediction.value, &refit.coefficients);
-        let through = |slope: &Vec<Complex<f64>>| slope.iter().zip(&shown.factor).map(|(s, f)| s * f).collect();
+            .sensor_output(evidence, series, &prediction.value, &refit.coefficients);
+        let through = |slope: &Vec<Complex<f64>>| slope.iter().zip(&reading.factor).map(|(s, f)| s * f).collect();
         let residual = series
             .value
             .iter()
-            .zip(&shown.value)
-            .map(|(measured, shown)| measured - shown);
+            .zip(&reading.value)
+            .map(|(measured, reading)| measured - reading);
         Self {
             sensor: series.sensor.clone(),
             sigma: series.sigma.clone(),
             residual: residual.collect(),
             slopes: prediction.slopes.iter().map(through).collect(),
-            shown: shown.value,
+            reading: reading.value,
         }
     }
 }
@@ -227,7 +227,7 @@ impl RunLines {
         let of_line = |line: usize| {
             let mut sums = Straight::default();
             for (sensor, changed) in self.sensors.iter().zip(&changed.sensors) {
-                let difference = changed.shown[line] - sensor.shown[line];
+                let difference = changed.reading[line] - sensor.reading[line];
                 sums.add(0.0, sensor.slopes[column][line], difference, sensor.sigma[line]);
             }
             let scalar = sums.solve().0;
@@ -240,9 +240,9 @@ impl RunLines {
         (0..self.frequency.len()).map(of_line).collect()
     }
 
-    fn kappa(&self, changes: &[Estimate], unit: impl Fn(f64) -> Complex<f64>) -> KappaRun {
+    fn missing_stiffness(&self, changes: &[Estimate], unit: impl Fn(f64) -> Complex<f64>) -> RunStiffness {
         let units: Vec<Complex<f64>> = self.frequency.iter().map(|&f| unit(f)).collect();
-        KappaRun {
+        RunStiffness {
             run: self.run,
             level: self.level,
             frequency: self.frequency.clone(),

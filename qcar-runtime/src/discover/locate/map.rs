@@ -1,11 +1,11 @@
-//! κ at every place of a model.
+//! Missing dynamic stiffness κ at every place of a model.
 
 use std::f64::consts::TAU;
 
 use nalgebra::Complex;
 
-use super::kappa::{Kappa, Place};
 use super::lines::{Direction, Lines};
+use super::missing_stiffness::{MissingStiffness, Place};
 use crate::campaign::Role;
 use crate::discover::observe::{Evidence, Free, PredictError, predict};
 use crate::discover::posterior::Refit;
@@ -17,12 +17,16 @@ const FINITE: f64 = 0.3;
 
 /// κ at every place of the model, the best explanation first.
 ///
-/// Held-out runs are left out. Refit the base model with some tolerance first ([`Evidence::tolerant`]): a wrong model
-/// that is fitted closely hides its error in all its parameters.
+/// Uses the fitted runs alone. Refit the base model with some tolerance first ([`Evidence::with_tolerance`]): a wrong
+/// model that is fitted closely distributes its error over all its parameters.
 ///
 /// # Errors
 /// Fails if the model lacks a measured quantity.
-pub fn kappa_map(model: &dyn Model, refit: &Refit, evidence: &Evidence) -> Result<Vec<Kappa>, PredictError> {
+pub fn stiffness_map(
+    model: &dyn Model,
+    refit: &Refit,
+    evidence: &Evidence,
+) -> Result<Vec<MissingStiffness>, PredictError> {
     let places = places(model, &refit.values);
     let base = predict(model, &refit.values, &places, evidence, Role::Fit)?;
     let lines = Lines::new(refit, evidence, &base);
@@ -36,11 +40,11 @@ pub fn kappa_map(model: &dyn Model, refit: &Refit, evidence: &Evidence) -> Resul
         let compliance = lines.compliance(column, &changed, change);
         let direction = Direction::Slope(column);
         let of = |f: f64| unit.stiffness(f);
-        map.push(lines.kappa(Place::Parameter(free.parameter), &direction, &compliance, of));
+        map.push(lines.missing_stiffness(Place::Parameter(free.parameter), &direction, &compliance, of));
     }
     for sensor in lines.sensors() {
         let direction = Direction::Sensor(sensor.clone());
-        map.push(lines.kappa(Place::Sensor(sensor), &direction, &lines.rigid(), |_| Complex::ONE));
+        map.push(lines.missing_stiffness(Place::Sensor(sensor), &direction, &lines.rigid(), |_| Complex::ONE));
     }
     // A place that no channel sees explains nothing.
     map.retain(|kappa| kappa.ceiling > 0.0);

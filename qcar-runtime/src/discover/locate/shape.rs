@@ -4,15 +4,15 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::kappa::{Kappa, KappaRun, Place};
+use super::missing_stiffness::{MissingStiffness, Place, RunStiffness};
 
 /// Kind of law of a κ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Shape {
-    /// `k + jωc`.
+    /// A spring and damper, `k + jωc`.
     SpringDamper,
-    /// `-ω²m`, rigid or on a spring and damper.
+    /// A mass `-ω²m`, rigid or on a spring and damper.
     Mass,
     /// A spring-damper in parallel with a spring and damper in series.
     Relaxation,
@@ -42,21 +42,21 @@ impl Shape {
 }
 
 /// Smallest share of κ that a kind of law must explain.
-const ENOUGH: f64 = 0.8;
-/// Largest ratio of its remaining residual to that of the best kind.
-const AS_GOOD: f64 = 1.5;
+const LEAST_SHARE: f64 = 0.8;
+/// Largest ratio of its residual to that of the best kind.
+const COMPARABLE: f64 = 1.5;
 /// Relative difference between levels beyond which κ counts as level-dependent.
-const DIFFERS: f64 = 0.5;
+const LEVEL_DEPENDENT: f64 = 0.5;
 /// Smallest relative uncertainty of κ, since the classification is coarse.
-const COARSE: f64 = 0.05;
+const LEAST_UNCERTAINTY: f64 = 0.05;
 /// Natural and relaxation frequencies that are tried, Hz.
 const FREQUENCIES: [f64; 13] = [1.0, 1.5, 2.2, 3.3, 4.7, 6.8, 10.0, 12.0, 15.0, 22.0, 33.0, 47.0, 100.0];
 /// Damping ratios that are tried.
 const RATIOS: [f64; 3] = [0.05, 0.15, 0.4];
 
 /// Classifies a κ.
-pub fn shape(kappa: &Kappa) -> Shape {
-    if let Some(shape) = over_level(&kappa.runs) {
+pub fn shape(kappa: &MissingStiffness) -> Shape {
+    if let Some(shape) = by_level(&kappa.runs) {
         return shape;
     }
     let lines = Lines::of(&kappa.runs);
@@ -75,14 +75,14 @@ pub fn shape(kappa: &Kappa) -> Shape {
         ],
     };
     let best = shares.iter().map(|(_, share)| *share).fold(0.0, f64::max);
-    let like = |(_, share): &&(Shape, f64)| *share > ENOUGH && 1.0 - share <= AS_GOOD * (1.0 - best);
-    shares.iter().find(like).map_or(Shape::Other, |(shape, _)| *shape)
+    let fits = |(_, share): &&(Shape, f64)| *share > LEAST_SHARE && 1.0 - share <= COMPARABLE * (1.0 - best);
+    shares.iter().find(fits).map_or(Shape::Other, |(shape, _)| *shape)
 }
 
 /// Kind of law of a level-dependent κ; `None` if κ does not depend on the level.
-fn over_level(runs: &[KappaRun]) -> Option<Shape> {
-    let by_level = |a: &&KappaRun, b: &&KappaRun| a.level.total_cmp(&b.level);
-    let (small, large) = (runs.iter().min_by(by_level)?, runs.iter().max_by(by_level)?);
+fn by_level(runs: &[RunStiffness]) -> Option<Shape> {
+    let order = |a: &&RunStiffness, b: &&RunStiffness| a.level.total_cmp(&b.level);
+    let (small, large) = (runs.iter().min_by(order)?, runs.iter().max_by(order)?);
     let (mut difference, mut all, mut grows) = (0.0, 0.0, 0.0);
     for ((small, large), (a, b)) in small
         .value
@@ -96,20 +96,20 @@ fn over_level(runs: &[KappaRun]) -> Option<Shape> {
         all += weight * (small.norm_sqr() + large.norm_sqr()) / 2.0;
         grows += weight * (change.re + change.im) * change.norm();
     }
-    let depends = difference > DIFFERS * all;
+    let depends = difference > LEVEL_DEPENDENT * all;
     depends.then_some(if grows > 0.0 { Shape::FrictionLike } else { Shape::Other })
 }
 
 fn weight(value: f64, sigma: f64) -> f64 {
-    sigma.hypot(COARSE * value).powi(-2)
+    sigma.hypot(LEAST_UNCERTAINTY * value).powi(-2)
 }
 
 /// κ at the lines of all runs: angular frequency in rad/s, value and weight.
 struct Lines(Vec<(f64, Complex<f64>, f64)>);
 
 impl Lines {
-    fn of(runs: &[KappaRun]) -> Self {
-        let of_run = |run: &KappaRun| {
+    fn of(runs: &[RunStiffness]) -> Self {
+        let of_run = |run: &RunStiffness| {
             let lines = run.frequency.iter().zip(&run.value).zip(&run.sigma);
             let lines = lines.map(|((f, value), sigma)| (TAU * f, *value, weight(value.norm(), *sigma)));
             lines.collect::<Vec<_>>()
@@ -142,12 +142,12 @@ impl Lines {
     /// The same share for a mass, on the best of several springs and dampers or rigid.
     fn mass(&self) -> f64 {
         let rigid = self.share(&[&|w| Complex::from(-w * w)]);
-        let hung = FREQUENCIES.iter().flat_map(|f| RATIOS.map(|ratio| (TAU * f, ratio)));
-        let hung = hung.map(|(natural, ratio)| {
-            let holds = |w: f64| Complex::new(natural * natural, 2.0 * ratio * natural * w);
-            self.share(&[&|w| -w * w * holds(w) / (holds(w) - w * w)])
+        let mounted = FREQUENCIES.iter().flat_map(|f| RATIOS.map(|ratio| (TAU * f, ratio)));
+        let mounted = mounted.map(|(natural, ratio)| {
+            let mount = |w: f64| Complex::new(natural * natural, 2.0 * ratio * natural * w);
+            self.share(&[&|w| -w * w * mount(w) / (mount(w) - w * w)])
         });
-        hung.fold(rigid, f64::max)
+        mounted.fold(rigid, f64::max)
     }
 
     /// The same share for a spring-damper in parallel with a relaxing branch.

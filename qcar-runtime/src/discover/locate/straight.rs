@@ -22,10 +22,10 @@ impl Straight {
 
     /// `a` and its standard deviation; zero and infinity without data.
     pub fn solve(&self) -> (Complex<f64>, f64) {
-        const ONE_PLACE: f64 = 1e-12;
+        const SINGULAR: f64 = 1e-12;
         let [w0, w1, w2] = self.weight;
         let determinant = w0 * w2 - w1 * w1;
-        if determinant > ONE_PLACE * w0 * w2 {
+        if determinant > SINGULAR * w0 * w2 {
             let value = (self.moment[0] * w2 - self.moment[1] * w1) / determinant;
             (value, (w2 / determinant).sqrt())
         } else if w0 > 0.0 {

@@ -1,24 +1,24 @@
 //! Finds the places that explain the residual of the sweeps.
 
-use super::kappa::Kappa;
 use super::lines::Lines;
-use super::map::kappa_map;
+use super::map::stiffness_map;
+use super::missing_stiffness::MissingStiffness;
 use crate::campaign::Role;
 use crate::discover::observe::{Evidence, Kind, PredictError, Stimulus, predict};
-use crate::discover::posterior::{Gap, Refit, refit};
+use crate::discover::posterior::{Misfit, Refit, refit};
 use crate::model::Model;
 
-/// What the sweeps show about the place of a missing effect.
+/// Places that explain the residual of the sweeps.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sweeps {
     /// Places of the model, best explanation first; empty without sweeps.
-    pub places: Vec<Kappa>,
-    /// Sum of squared, normalised first harmonics that the base model leaves.
-    pub left: f64,
+    pub places: Vec<MissingStiffness>,
+    /// Sum of the squared normalised residuals of the first harmonics.
+    pub squared_residual: f64,
 }
 
-/// Relative uncertainty added to every value before κ is computed: a wrong model that is fitted closely hides its error
-/// in all its parameters.
+/// Relative uncertainty added to every value before κ is computed. A wrong model that is fitted closely would distribute
+/// its error over all its parameters.
 const TOLERANCE: f64 = 0.1;
 
 impl Sweeps {
@@ -31,23 +31,23 @@ impl Sweeps {
         if sweeps.of_role(Role::Fit).next().is_none() {
             return Ok(Self::default());
         }
-        let eased = refit(model, &before.values, &before.free, &sweeps.tolerant(TOLERANCE))?;
-        let base = predict(model, &eased.values, &[], &sweeps, Role::Fit)?;
+        let tolerant = refit(model, &before.values, &before.free, &sweeps.with_tolerance(TOLERANCE))?;
+        let base = predict(model, &tolerant.values, &[], &sweeps, Role::Fit)?;
         Ok(Self {
-            left: Lines::new(&eased, &sweeps, &base).left(),
-            places: kappa_map(model, &eased, &sweeps)?,
+            squared_residual: Lines::new(&tolerant, &sweeps, &base).squared_residual(),
+            places: stiffness_map(model, &tolerant, &sweeps)?,
         })
     }
 
-    /// Share of `left` that another model explains, from its residual `gap`; `None` if nothing was left.
-    pub fn explained_by(&self, gap: &Gap, evidence: &Evidence) -> Option<f64> {
+    /// Share of `squared_residual` that another model explains, from its `misfit`; `None` if there is no residual.
+    pub fn explained_by(&self, misfit: &Misfit, evidence: &Evidence) -> Option<f64> {
         let first = evidence
             .of_role(Role::Fit)
             .filter(|(_, series)| series.kind == Kind::Harmonic(1));
         let squares = first
-            .flat_map(|(place, _)| &gap.residuals[place])
+            .flat_map(|(place, _)| &misfit.residuals[place])
             .map(|residual| residual * residual);
         // Each part of a complex residual is in units of its own standard deviation, hence the factor 2.
-        (self.left > 0.0).then(|| 1.0 - squares.sum::<f64>() / 2.0 / self.left)
+        (self.squared_residual > 0.0).then(|| 1.0 - squares.sum::<f64>() / 2.0 / self.squared_residual)
     }
 }

@@ -58,8 +58,8 @@ pub const SENSOR: [Shape; 7] = [
     },
 ];
 
-/// Largest calibration error in prior standard deviations. A larger error is a sensor fault, which must be explained as
-/// a residual.
+/// Largest calibration error of a fit against noise alone, in prior standard deviations. A larger error is a sensor
+/// fault; it must remain in the residual.
 ///
-/// Both sensors of a ratio may be wrong, so a ratio may be wrong by twice as much.
-pub const STRAINED: f64 = 2.0;
+/// Both sensors of a ratio may have this error, so the ratio may have twice as much.
+pub const CALIBRATION_BOUND: f64 = 2.0;

@@ -34,7 +34,7 @@ pub struct Discrepancy {
 
 /// Estimated discrepancy of a group.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Missed {
+pub struct GroupDiscrepancy {
     /// Sensor of the group.
     pub sensor: Point,
     /// Kind of its values.
@@ -74,7 +74,7 @@ impl Discrepancy {
         }
     }
 
-    /// The groups of other evidence or another role, with the `τ` of the same groups here.
+    /// The discrepancy of other evidence or another role. Groups that are also in `self` keep their `τ`.
     pub fn carried_to(&self, evidence: &Evidence, role: Role) -> Self {
         let mut carried = Self::of(evidence, role);
         for group in &mut carried.groups {
@@ -123,15 +123,15 @@ impl Discrepancy {
     }
 
     /// Sets every `τ` to its most probable value for these data residuals in units of their noise.
-    pub fn learn(&mut self, residual: &[f64]) {
+    pub fn estimate(&mut self, residual: &[f64]) {
         for group in &mut self.groups {
-            group.learn(residual);
+            group.estimate(residual);
         }
     }
 
     /// Estimated discrepancy of each group.
-    pub fn missed(&self) -> impl Iterator<Item = Missed> {
-        self.groups.iter().map(|group| Missed {
+    pub fn by_group(&self) -> impl Iterator<Item = GroupDiscrepancy> {
+        self.groups.iter().map(|group| GroupDiscrepancy {
             sensor: group.key.sensor.clone(),
             kind: group.key.kind,
             tau: group.tau,

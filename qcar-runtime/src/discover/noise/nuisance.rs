@@ -1,9 +1,9 @@
 //! Systematic sensor errors as nuisance parameters with a prior. They are equal in all runs.
 //!
 //! A calibrated accelerometer is wrong by 0.5 to 1 % in gain and by a few tenths of a degree in phase, smoothly in
-//! frequency. Treated as noise, such an error would look like a hundred independent proofs of a small effect. As a
-//! nuisance parameter, it is estimated together with the model parameters, and only what no calibration explains
-//! remains as a residual. The error of a sensor is `exp(Σ_k c_k φ_k(f))` with real coefficients `c_k ~ N(0, σ_k²)`;
+//! frequency. If it were noise, it would count as a hundred independent signs of a small effect. As a nuisance
+//! parameter, it is estimated together with the model parameters, and only errors beyond every calibration remain in
+//! the residual. The error of a sensor is `exp(Σ_k c_k φ_k(f))` with real coefficients `c_k ~ N(0, σ_k²)`;
 //! time histories also have an offset.
 
 use nalgebra::Complex;
@@ -29,12 +29,13 @@ pub struct Nuisance {
     /// Sensors whose records have no offset, each with the parameter or state of the model that acts as one.
     pub without_offset: Vec<(Point, String)>,
     /// Unknown initial states of the records.
-    pub beginnings: Vec<Beginning>,
+    pub initial_states: Vec<InitialState>,
 }
 
-/// Initial state of a record: its deviation from what a sensor shows at the first sample, or from rest.
+/// Initial state of a record, as the deviation from the sensor reading at the first sample, or from rest without such a
+/// sensor.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Beginning {
+pub struct InitialState {
     /// The run, by its file.
     pub run: String,
     /// Name of the state in the model.
@@ -79,13 +80,13 @@ impl Nuisance {
                 frequencies().fold(0.0, f64::max),
             ),
             suspects: Vec::new(),
-            beginnings: Vec::new(),
+            initial_states: Vec::new(),
         }
     }
 
-    /// Adds a suspected error that the sensors of a location share, along one axis or along all. `sigma` is its prior
+    /// Adds a suspected error that the sensors of a location share, along one axis or all axes. `sigma` is its prior
     /// standard deviation. `None` if the evidence has no such sensor, or if all axes are wanted and there is only one.
-    pub fn suspecting(mut self, location: &str, axis: Option<Axis>, form: Form, sigma: f64) -> Option<Self> {
+    pub fn with_suspect(mut self, location: &str, axis: Option<Axis>, form: Form, sigma: f64) -> Option<Self> {
         let is_it = |sensor: &Point| sensor.location == location && axis.is_none_or(|axis| sensor.axis == axis);
         let sensors: Vec<usize> = (0..self.sensors.len()).filter(|&k| is_it(&self.sensors[k])).collect();
         let first = &self.sensors[*sensors.first()?];
@@ -96,31 +97,31 @@ impl Nuisance {
         Some(self)
     }
 
-    /// Replaces the initial states by those that `about` has in the fitted records.
-    pub fn beginning(mut self, about: &About, evidence: &Evidence) -> Self {
+    /// Replaces the initial states by those of a model in the fitted records.
+    pub fn with_initial_states(mut self, about: &About, evidence: &Evidence) -> Self {
         let fitted = evidence.runs.iter().filter(|run| run.role == Role::Fit);
         let of_run = |run: &Run| {
             let Stimulus::History { spread, .. } = &run.stimulus else {
                 return Vec::new();
             };
             let states = about.states.iter();
-            let beginning = |state: &State| {
-                Some(Beginning {
+            let initial_state = |state: &State| {
+                Some(InitialState {
                     run: run.name.clone(),
                     state: state.name.to_string(),
                     sigma: spread.sigma(state)?,
                 })
             };
-            states.filter_map(beginning).collect()
+            states.filter_map(initial_state).collect()
         };
-        self.beginnings = fitted.flat_map(of_run).collect();
+        self.initial_states = fitted.flat_map(of_run).collect();
         self
     }
 
     /// Number of coefficients: [`SENSOR`] for each sensor in turn, one for each suspect, and one for each initial
     /// state.
     pub fn len(&self) -> usize {
-        self.of_sensors() + self.beginnings.len()
+        self.of_sensors() + self.initial_states.len()
     }
 
     /// Number of coefficients before those of the initial states.
@@ -143,7 +144,7 @@ impl Nuisance {
         let priors = self.sensors.iter().flat_map(|_| SENSOR.map(|shape| shape.sigma));
         priors
             .chain(self.suspects.iter().map(|suspect| suspect.sigma))
-            .chain(self.beginnings.iter().map(|beginning| beginning.sigma))
+            .chain(self.initial_states.iter().map(|initial_state| initial_state.sigma))
             .collect()
     }
 
@@ -166,11 +167,11 @@ impl Nuisance {
     }
 }
 
-/// RMS of all records of a sensor.
+/// RMS of all records of a sensor; 0 without records.
 fn reads(evidence: &Evidence, sensor: &Point) -> f64 {
     let is_it = |series: &&Series| {
-        let holds_rest = evidence.runs[series.run].stimulus.holds_rest();
-        series.kind == Kind::Time && series.sensor == *sensor && holds_rest
+        let passes_mean = evidence.runs[series.run].stimulus.passes_mean();
+        series.kind == Kind::Time && series.sensor == *sensor && passes_mean
     };
     let records = evidence.series.iter().filter(is_it);
     rms(records.flat_map(|series| &series.value))

@@ -42,7 +42,7 @@ impl Evidence {
     }
 
     /// Keeps the sensors at places that the model has, and adds a notice for each of the others.
-    pub(super) fn known(&mut self, about: &About, run: &str, points: Vec<Point>) -> Vec<Point> {
+    pub(super) fn keep_known(&mut self, about: &About, run: &str, points: Vec<Point>) -> Vec<Point> {
         let (known, unknown): (Vec<_>, Vec<_>) = points.into_iter().partition(|point| is_known(about, point));
         for point in unknown {
             let notice = format!(

@@ -6,10 +6,10 @@ use nalgebra::Complex;
 
 use super::{Delay, Evidence, Kind, PredictError, Prediction, Run, Series, Stimulus};
 
-/// Smallest distance between these times, s: slow against every mode of an axle.
-const APART: f64 = 3.0;
-/// Largest number of these times. Between two of them the change counts as linear.
-const MOST: usize = 6;
+/// Smallest distance between these times, s: long against the period of every mode of an axle.
+const SPACING: f64 = 3.0;
+/// Largest number of these times. The change between two of them counts as linear.
+const MOST_TIMES: usize = 6;
 
 /// Prediction of a run, interpolated from predictions `at` a part of the run (0 to 1) and the length of the run (s).
 ///
@@ -21,7 +21,7 @@ pub fn through(
     at: impl Fn(f64, f64) -> Result<Vec<Prediction>, PredictError>,
 ) -> Result<Vec<Prediction>, PredictError> {
     let length = length(&evidence.runs[run].stimulus);
-    let last = ((length / APART).ceil() as usize).min(MOST - 1);
+    let last = ((length / SPACING).ceil() as usize).min(MOST_TIMES - 1);
     let mut predictions = Vec::new();
     for k in 0..=last {
         predictions.push(at(k as f64 / last.max(1) as f64, length)?);
@@ -74,8 +74,8 @@ fn moments(series: &Series, run: &Run) -> Vec<f64> {
     }
 }
 
-/// For a part of a run (0 to 1) divided into `last` steps: the step that contains it, and the position in this step (0
-/// to 1).
+/// Step of a run divided into `last` steps that contains a position (0 to 1 over the run), and the position in this step
+/// (0 to 1).
 fn between(last: usize, part: f64) -> (usize, f64) {
     if last == 0 {
         return (0, 0.0);
@@ -100,7 +100,7 @@ fn blended(of_times: &[&Prediction], weights: &[(usize, f64)]) -> Prediction {
         slope: blend(&|p| p.delay.as_ref().map_or_else(Vec::new, |own| own.slope.clone())),
         shares: own.shares.clone(),
     });
-    let has_louder = first.louder.is_some();
+    let has_drive = first.by_drive.is_some();
     Prediction {
         series: first.series,
         value: blend(&|p| p.value.clone()),
@@ -108,9 +108,14 @@ fn blended(of_times: &[&Prediction], weights: &[(usize, f64)]) -> Prediction {
             .map(|k| blend(&|p| p.slopes[k].clone()))
             .collect(),
         delay,
-        louder: has_louder.then(|| blend(&|p| p.louder.clone().unwrap_or_default())),
-        begun: (0..first.begun.len())
-            .map(|k| (first.begun[k].0.clone(), blend(&|p| p.begun[k].1.clone())))
+        by_drive: has_drive.then(|| blend(&|p| p.by_drive.clone().unwrap_or_default())),
+        by_initial_states: (0..first.by_initial_states.len())
+            .map(|k| {
+                (
+                    first.by_initial_states[k].0.clone(),
+                    blend(&|p| p.by_initial_states[k].1.clone()),
+                )
+            })
             .collect(),
     }
 }

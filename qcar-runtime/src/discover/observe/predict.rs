@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::dataset::Evidence;
-use super::prediction::{Free, Misread, PredictError, Prediction};
+use super::prediction::{Free, PredictError, Prediction, TestConditions};
 use super::run::{Run, Stimulus};
 use super::{cleat, drift, dynamometer, kc, sweep, time_history};
 use crate::campaign::Role;
@@ -11,8 +11,8 @@ use crate::model::Model;
 use crate::response::parameters::Values;
 use crate::transmissibility::Point;
 
-/// Predicts all series of the runs of one role, with derivatives by the `free` parameters. Unless `free` is empty, it
-/// also gives the derivatives by the initial states of the records.
+/// Predicts all series of the runs of one role, with derivatives by the `free` parameters and, unless `free` is empty,
+/// by the initial states of the records.
 ///
 /// # Errors
 /// Fails if the model lacks a measured quantity.
@@ -23,21 +23,20 @@ pub fn predict(
     evidence: &Evidence,
     role: Role,
 ) -> Result<Vec<Prediction>, PredictError> {
-    let misread = Misread::default();
-    predict_sides(model, [values, values], &misread, free, evidence, &|run| {
+    let conditions = TestConditions::default();
+    predict_sides(model, [values, values], &conditions, free, evidence, &|run| {
         run.role == role
     })
 }
 
-/// Predicts the `wanted` runs of a car whose recorded side has its own parameters, the second set; cleat runs use
-/// these. `misread` holds the sensor errors.
+/// Predicts the `wanted` runs. The second parameter set is that of the side of the car that cleat runs record.
 ///
 /// # Errors
 /// Fails as [`predict`] does.
 pub fn predict_sides(
     model: &dyn Model,
     [values, side]: [&Values; 2],
-    misread: &Misread,
+    conditions: &TestConditions,
     free: &[Free],
     evidence: &Evidence,
     wanted: &dyn Fn(&Run) -> bool,
@@ -47,7 +46,7 @@ pub fn predict_sides(
         .collect();
     let of_runs = runs
         .into_par_iter()
-        .map(|run| of_run(model, [values, side], misread, free, evidence, run));
+        .map(|run| of_run(model, [values, side], conditions, free, evidence, run));
     Ok(of_runs.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
 }
 
@@ -55,14 +54,14 @@ pub fn predict_sides(
 ///
 /// # Errors
 /// Fails as [`predict`] does.
-pub fn predict_begun(
+pub fn predict_by_initial_states(
     model: &dyn Model,
     values: &Values,
-    misread: &Misread,
+    conditions: &TestConditions,
     evidence: &Evidence,
     run: usize,
 ) -> Result<Vec<Prediction>, PredictError> {
-    time_history::history(model, values, misread, (&[], true), evidence, run)
+    time_history::history(model, values, conditions, (&[], true), evidence, run)
 }
 
 /// Sample-by-sample signals of the sensors of a sweep or a time history; empty for any other run.
@@ -72,13 +71,13 @@ pub fn predict_begun(
 pub fn replayed(
     model: &dyn Model,
     values: &Values,
-    misread: &Misread,
+    conditions: &TestConditions,
     evidence: &Evidence,
     run: usize,
 ) -> Result<Vec<(Point, Vec<f64>)>, PredictError> {
     match &evidence.runs[run].stimulus {
         Stimulus::Sweep { .. } => sweep::replayed(model, values, evidence, run),
-        Stimulus::History { .. } => time_history::replayed(model, values, misread, evidence, run),
+        Stimulus::History { .. } => time_history::replayed(model, values, conditions, evidence, run),
         _ => Ok(Vec::new()),
     }
 }
@@ -86,36 +85,36 @@ pub fn replayed(
 fn of_run(
     model: &dyn Model,
     both: [&Values; 2],
-    misread: &Misread,
+    conditions: &TestConditions,
     free: &[Free],
     evidence: &Evidence,
     run: usize,
 ) -> Result<Vec<Prediction>, PredictError> {
     if !both[0].have_clocks() {
-        return of_unchanging(model, both, misread, free, evidence, run);
+        return at_constant_parameters(model, both, conditions, free, evidence, run);
     }
     drift::through(evidence, run, |part, length| {
         let [values, side] = both.map(|own| own.at_part(part, length));
-        of_unchanging(model, [&values, &side], misread, free, evidence, run)
+        at_constant_parameters(model, [&values, &side], conditions, free, evidence, run)
     })
 }
 
 /// Predicts a run with constant parameters.
-fn of_unchanging(
+fn at_constant_parameters(
     model: &dyn Model,
     [values, side]: [&Values; 2],
-    misread: &Misread,
+    conditions: &TestConditions,
     free: &[Free],
     evidence: &Evidence,
     run: usize,
 ) -> Result<Vec<Prediction>, PredictError> {
-    let late = &misread.late;
+    let delays = &conditions.delays;
     match &evidence.runs[run].stimulus {
         Stimulus::Sweep { .. } if model.about().linear => sweep::linear(model, values, free, evidence, run),
-        Stimulus::Sweep { .. } => sweep::nonlinear(model, values, misread.louder(run), free, evidence, run),
-        Stimulus::Cleat(passage) => cleat::passage(model, side, late, free, evidence, (run, passage)),
+        Stimulus::Sweep { .. } => sweep::nonlinear(model, values, conditions.drive_of(run), free, evidence, run),
+        Stimulus::Cleat(passage) => cleat::passage(model, side, delays, free, evidence, (run, passage)),
         Stimulus::History { .. } => {
-            time_history::history(model, values, misread, (free, !free.is_empty()), evidence, run)
+            time_history::history(model, values, conditions, (free, !free.is_empty()), evidence, run)
         }
         Stimulus::Travel { .. } | Stimulus::Sine { .. } => kc::travel(model, values, free, evidence, run),
         Stimulus::Dynamometer { .. } => dynamometer::forces(model, values, free, evidence, run),

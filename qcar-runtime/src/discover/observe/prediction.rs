@@ -29,34 +29,34 @@ pub struct Prediction {
     pub value: Vec<Complex<f64>>,
     /// Derivatives of the values by each free parameter.
     pub slopes: Vec<Vec<Complex<f64>>>,
-    /// Effect of sensor delays on values over time; `None` if a delay only turns their phase or has no effect.
+    /// Effect of sensor delays on values over time; `None` if a delay changes only their phase, or nothing.
     pub delay: Option<Delay>,
     /// Derivatives of the values by the log amplitude of the excitation; `None` if the values do not depend on it.
-    pub louder: Option<Vec<Complex<f64>>>,
-    /// Derivatives of the values by the initial states of the record, by name. Empty without derivatives or if the
-    /// prediction does not start with a record.
-    pub begun: Vec<(String, Vec<Complex<f64>>)>,
+    pub by_drive: Option<Vec<Complex<f64>>>,
+    /// Derivatives of the values by the initial states of a record, by name. Empty for other runs and without
+    /// derivatives.
+    pub by_initial_states: Vec<(String, Vec<Complex<f64>>)>,
 }
 
-/// Sensor errors that change the prediction itself, not only the displayed values.
+/// Unknown test conditions: they change the prediction itself, not only the readings of its sensors.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Misread {
+pub struct TestConditions {
     /// Delay of the sensor of each series, s; missing entries are zero.
-    pub late: Vec<f64>,
-    /// Factor of the true excitation of each run on that of its reference; missing entries are 1.
-    pub louder: Vec<f64>,
-    /// For each run, states with their deviations from what sensors show at the first sample, or from rest, SI; missing
-    /// entries are zero.
-    pub begun: Vec<Vec<(String, f64)>>,
+    pub delays: Vec<f64>,
+    /// Factor of the true excitation of each run on that of its reference sensor; missing entries are 1.
+    pub drive: Vec<f64>,
+    /// For each run, states with their deviations from the sensor reading at the first sample, or from rest without a
+    /// sensor, SI; missing entries are zero.
+    pub initial_states: Vec<Vec<(String, f64)>>,
 }
 
-impl Misread {
-    pub(super) fn begun(&self, run: usize) -> &[(String, f64)] {
-        self.begun.get(run).map_or(&[], Vec::as_slice)
+impl TestConditions {
+    pub(super) fn initial_states_of(&self, run: usize) -> &[(String, f64)] {
+        self.initial_states.get(run).map_or(&[], Vec::as_slice)
     }
 
-    pub(super) fn louder(&self, run: usize) -> f64 {
-        self.louder.get(run).copied().unwrap_or(1.0)
+    pub(super) fn drive_of(&self, run: usize) -> f64 {
+        self.drive.get(run).copied().unwrap_or(1.0)
     }
 }
 
@@ -71,11 +71,11 @@ pub struct Delay {
 
 impl Prediction {
     /// Adds the non-steady part to the values; an empty slice adds nothing.
-    pub fn add(&mut self, missing: &[Complex<f64>]) {
+    pub fn add(&mut self, unsteady: &[Complex<f64>]) {
         self.value
             .iter_mut()
-            .zip(missing)
-            .for_each(|(value, missing)| *value += missing);
+            .zip(unsteady)
+            .for_each(|(value, unsteady)| *value += unsteady);
     }
 }
 

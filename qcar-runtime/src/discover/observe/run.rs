@@ -12,8 +12,8 @@ mod passage;
 pub use band::Band;
 pub use means::Means;
 pub use passage::Passage;
-pub(super) use passage::{COARSE_POINTS, FINE_POINTS, HURRIED, PATIENT};
-pub use restart::{Restart, Spread, is_seen};
+pub(super) use passage::{COARSE_POINTS, FINE_POINTS, SEARCH_STEP_LIMIT, STEP_LIMIT};
+pub use restart::{Restart, Spread, measures};
 
 use std::sync::Arc;
 
@@ -144,9 +144,9 @@ impl Stimulus {
     }
 
     /// True if the mean of a signal is compared too.
-    pub fn holds_rest(&self) -> bool {
+    pub fn passes_mean(&self) -> bool {
         match self {
-            Stimulus::History { band: Some(band), .. } => band.holds_rest(),
+            Stimulus::History { band: Some(band), .. } => band.passes_mean(),
             _ => true,
         }
     }

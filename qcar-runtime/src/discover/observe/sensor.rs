@@ -7,9 +7,9 @@ use crate::transmissibility::{End, Point, points};
 
 /// The signal of the model that a sensor measures.
 ///
-/// A displacement sensor on a link measures its stretch. A sensor at an end of a place stands at the point of that
-/// name, such as `sf_front`, if the model has one. Any other sensor stands at the point with the suffix `_sensor`, such
-/// as `sf_sensor`, if the model has one. Otherwise it stands at the place itself.
+/// A displacement sensor on a link measures its stretch. A sensor at an end of a place is at the point of that name,
+/// such as `sf_front`, if the model has one. Any other sensor is at the point with the suffix `_sensor`, such as
+/// `sf_sensor`, if the model has one. Otherwise it is at the place itself.
 pub fn signal_of(about: &About, point: &Point) -> Signal {
     let link = about
         .links

@@ -3,15 +3,15 @@
 use nalgebra::Complex;
 
 use super::dataset::Evidence;
-use super::run::{Band, COARSE_POINTS, HURRIED, Run, Stimulus};
+use super::run::{Band, COARSE_POINTS, Run, SEARCH_STEP_LIMIT, Stimulus};
 use super::series::Series;
 
-/// Largest factor by which a record is shortened: its beginning need not represent the rest.
+/// Largest factor by which a record is shortened, since its beginning may not represent the rest.
 const MOST_SHORTENED: usize = 2;
 
 impl Evidence {
-    /// Adds the share of every value to its uncertainty, for a model that is known to lack something.
-    pub fn tolerant(&self, share: f64) -> Self {
+    /// Adds a share of every value to its uncertainty, for a model that is known to lack an effect.
+    pub fn with_tolerance(&self, share: f64) -> Self {
         let mut tolerant = self.clone();
         for series in &mut tolerant.series {
             let values = series.value.iter().zip(&mut series.sigma);
@@ -20,20 +20,20 @@ impl Evidence {
         tolerant
     }
 
-    /// Limits the integration steps of cleat runs, so that a search over many candidates rejects a passage that takes
-    /// far longer than others.
-    pub fn hurried(&self) -> Self {
-        let mut hurried = self.clone();
-        for run in &mut hurried.runs {
+    /// Limits the integration steps of cleat runs, so that a search over many candidates rejects a model whose passages
+    /// take far longer than those of others.
+    pub fn with_step_limit(&self) -> Self {
+        let mut limited = self.clone();
+        for run in &mut limited.runs {
             if let Stimulus::Cleat(passage) = &mut run.stimulus {
-                passage.most_steps = HURRIED;
+                passage.most_steps = SEARCH_STEP_LIMIT;
             }
         }
-        hurried
+        limited
     }
 
     /// Keeps every `step`-th value of each series for a coarse fit. Histories and cleat runs keep their beginning
-    /// instead, because a model must be simulated through all values that are compared.
+    /// instead, because their simulation computes every sample up to the last one that is compared.
     pub fn thinned(&self, step: usize) -> Self {
         let mut thinned = self.clone();
         let shorten = |(run, of): (usize, &mut Run)| {
@@ -49,17 +49,17 @@ impl Evidence {
         thinned
     }
 
-    /// Subtracts `beyond`, the part that a search does not predict, series by series.
-    pub fn less(&self, beyond: &[Vec<Complex<f64>>]) -> Self {
-        let mut less = self.clone();
-        for (series, beyond) in less.series.iter_mut().zip(beyond) {
+    /// Subtracts the non-steady part, which a search does not predict, series by series.
+    pub fn minus(&self, unsteady: &[Vec<Complex<f64>>]) -> Self {
+        let mut steady = self.clone();
+        for (series, unsteady) in steady.series.iter_mut().zip(unsteady) {
             series
                 .value
                 .iter_mut()
-                .zip(beyond)
-                .for_each(|(value, beyond)| *value -= beyond);
+                .zip(unsteady)
+                .for_each(|(value, unsteady)| *value -= unsteady);
         }
-        less
+        steady
     }
 
     /// Keeps only the runs for which `keep` is true.
@@ -81,9 +81,9 @@ impl Evidence {
 }
 
 impl Stimulus {
-    /// Shortens a record that a model must be simulated through: a history by a limited factor `times`, a passage with
-    /// values `at` these times (s) to half of them. Returns the new end time (s) and the decimation of the values up to
-    /// there. Other excitations only decimate.
+    /// Shortens a record that a model is simulated through: a history by the factor `times` up to a limit, a passage with
+    /// values `at` these times (s) to half of them. Returns the new end time (s) and the decimation of the remaining
+    /// values. Other excitations are only decimated.
     fn shorten(&mut self, times: usize, at: &[f64]) -> (f64, usize) {
         match self {
             // A part of a period is not periodic.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::gap::Gap;
+use super::misfit::Misfit;
 use super::refit::Refit;
 use crate::discover::observe::PredictError;
 use crate::model::About;
@@ -48,7 +48,7 @@ pub struct Explanation {
     /// The fit, with its nuisance parameters.
     pub refit: Refit,
     /// Residuals over all runs.
-    pub gap: Gap,
+    pub misfit: Misfit,
 }
 
 impl Explanation {

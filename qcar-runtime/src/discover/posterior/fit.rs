@@ -3,7 +3,7 @@
 use super::offset;
 use super::problem::Posterior;
 use super::refit::Refit;
-use crate::discover::noise::{Beginning, Discrepancy, Nuisance};
+use crate::discover::noise::{Discrepancy, InitialState, Nuisance};
 use crate::discover::observe::{Evidence, Free, PredictError};
 use crate::least_squares::Problem;
 use crate::model::Model;
@@ -32,8 +32,8 @@ pub fn refit_with(
     nuisance: Nuisance,
     evaluations: usize,
 ) -> Result<Refit, PredictError> {
-    let nuisance = nuisance.beginning(model.about(), evidence);
-    let nuisance = offset::once(nuisance, model, values, free, evidence)?;
+    let nuisance = nuisance.with_initial_states(model.about(), evidence);
+    let nuisance = offset::remove_confounded(nuisance, model, values, free, evidence)?;
     let mut start: Vec<f64> = free.iter().map(|free| values.as_slice()[free.parameter]).collect();
     let mut posterior = Posterior::new(model, values.clone(), free, evidence, nuisance);
     start.resize(posterior.variables(), 0.0);
@@ -47,8 +47,8 @@ pub struct Start<'a> {
     pub values: &'a Values,
     /// Coefficients of the sensor errors, followed by the log factors of the recorded side; missing ones are zero.
     pub errors: &'a [f64],
-    /// Initial states of the records; missing ones start where sensors show them.
-    pub begun: &'a [(Beginning, f64)],
+    /// Initial states of the records; missing ones start at the sensor readings, or at rest.
+    pub initial_states: &'a [(InitialState, f64)],
     /// Centres of the parameter priors.
     pub centre: &'a Values,
     /// Discrepancy at the start.
@@ -69,26 +69,26 @@ pub fn fit(
     (rounds, evaluations): (usize, usize),
 ) -> Result<Refit, PredictError> {
     let (errors, factors) = start.errors.split_at(start.errors.len().min(nuisance.of_sensors()));
-    let nuisance = nuisance.beginning(model.about(), evidence);
-    let nuisance = offset::once(nuisance, model, start.values, free, evidence)?;
+    let nuisance = nuisance.with_initial_states(model.about(), evidence);
+    let nuisance = offset::remove_confounded(nuisance, model, start.values, free, evidence)?;
     let mut place: Vec<f64> = free
         .iter()
         .map(|free| start.values.as_slice()[free.parameter])
         .collect();
     place.extend(errors);
     place.resize(free.len() + nuisance.of_sensors(), 0.0);
-    let begun = |own: &Beginning| {
+    let initial = |own: &InitialState| {
         let known = start
-            .begun
+            .initial_states
             .iter()
             .find(|(known, _)| known.run == own.run && known.state == own.state);
         known.map_or(0.0, |(_, value)| *value)
     };
-    place.extend(nuisance.beginnings.iter().map(begun));
+    place.extend(nuisance.initial_states.iter().map(initial));
     place.extend(factors);
     let mut posterior = Posterior::new(model, start.values.clone(), free, evidence, nuisance);
     posterior.discrepancy = Some(start.discrepancy);
-    posterior.by_evidence = true;
+    posterior.has_discrepancy = true;
     posterior.centre = start.centre.clone();
     place.resize(posterior.variables(), 0.0);
     posterior.fit(place, rounds, evaluations)

@@ -38,7 +38,7 @@ impl Posterior<'_> {
             discrepancy: self.discrepancy.clone(),
             centre: self.centre.clone(),
             residuals: self.residuals,
-            made: if self.evidence.two_sided {
+            side_sd: if self.evidence.two_sided {
                 SIDE / f64::sqrt(2.0)
             } else {
                 0.0
@@ -78,7 +78,7 @@ impl Posterior<'_> {
     }
 }
 
-/// Why one of the first `count` variables cannot be estimated, in terms of these variables; `None` if it can.
+/// Why one of the first `count` variables cannot be estimated, with positions among these variables; `None` if it can.
 fn unseen(information: &Information, variable: usize, count: usize) -> Option<Unseen> {
     match information.unseen(variable)? {
         Unseen::Nowhere => Some(Unseen::Nowhere),

@@ -37,7 +37,7 @@ impl Refit {
         }
         let mut posterior = Posterior::new(other, values.clone(), &[], evidence, nuisance);
         posterior.side = side;
-        posterior.by_evidence = self.discrepancy.is_some();
+        posterior.has_discrepancy = self.discrepancy.is_some();
         let mut residual = vec![0.0; posterior.residuals()];
         posterior.residual_and_slopes(coefficients, &mut residual, false);
         residual.truncate(posterior.residuals);

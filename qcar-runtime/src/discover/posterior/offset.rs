@@ -8,7 +8,7 @@ use crate::discover::observe::{Evidence, Free, PredictError, Prediction, Run, St
 use crate::model::Model;
 use crate::response::parameters::Values;
 
-/// Largest share of the power of a derivative outside the constant, for a derivative that counts as constant.
+/// Largest share of the power of a derivative outside its mean, for a derivative that counts as constant.
 const CONSTANT: f64 = 1e-5;
 /// Share of a power that counts as rounding error.
 const ROUNDING: f64 = 1e-9;
@@ -18,7 +18,7 @@ const ROUNDING: f64 = 1e-9;
 ///
 /// # Errors
 /// Fails if the model lacks a measured quantity.
-pub fn once(
+pub fn remove_confounded(
     mut nuisance: Nuisance,
     model: &dyn Model,
     values: &Values,
@@ -26,8 +26,8 @@ pub fn once(
     evidence: &Evidence,
 ) -> Result<Nuisance, PredictError> {
     let is_record = |run: &Run| run.role == Role::Fit && matches!(run.stimulus, Stimulus::History { .. });
-    let misread = nuisance.misread(evidence, &vec![0.0; nuisance.len()]);
-    let predictions = predict_sides(model, [values, values], &misread, free, evidence, &is_record)?;
+    let conditions = nuisance.conditions(evidence, &vec![0.0; nuisance.len()]);
+    let predictions = predict_sides(model, [values, values], &conditions, free, evidence, &is_record)?;
     nuisance.without_offset.clear();
     for prediction in &predictions {
         let sensor = &evidence.series[prediction.series].sensor;
@@ -40,28 +40,28 @@ pub fn once(
 }
 
 /// Name of the parameter, or of the initial state, that shifts a prediction by a constant; `None` if there is none. An
-/// initial state does so if nothing pulls it back.
+/// initial state does so if no force acts against it.
 fn owner(model: &dyn Model, free: &[Free], prediction: &Prediction) -> Option<String> {
     let real = |slope: &[nalgebra::Complex<f64>]| DVector::from_iterator(slope.len(), slope.iter().map(|s| s.re));
     let constant = DVector::from_element(prediction.value.len(), 1.0);
-    let mut begun: Vec<DVector<f64>> = Vec::new();
-    for (state, slope) in &prediction.begun {
+    let mut of_states: Vec<DVector<f64>> = Vec::new();
+    for (state, slope) in &prediction.by_initial_states {
         let column = real(slope);
         if is_multiple(&column, &constant) {
             return Some(state.clone());
         }
-        let own = without(&column, &begun);
+        let own = without(&column, &of_states);
         if own.norm_squared() > ROUNDING * column.norm_squared() {
-            begun.push(own.normalize());
+            of_states.push(own.normalize());
         }
     }
-    let constant = without(&constant, &begun);
+    let constant = without(&constant, &of_states);
     let moves = |(free, slope): (&Free, &Vec<nalgebra::Complex<f64>>)| {
         let column = real(slope);
-        let own = without(&column, &begun);
-        let is_seen = own.norm_squared() > ROUNDING * column.norm_squared();
+        let own = without(&column, &of_states);
+        let is_independent = own.norm_squared() > ROUNDING * column.norm_squared();
         let name = &model.about().parameters[free.parameter].name;
-        (is_seen && is_multiple(&own, &constant)).then(|| name.to_string())
+        (is_independent && is_multiple(&own, &constant)).then(|| name.to_string())
     };
     free.iter().zip(&prediction.slopes).find_map(moves)
 }

@@ -7,8 +7,8 @@ use crate::model::Model;
 pub const SIDE: f64 = 0.015;
 
 /// Standard deviation of the weak prior around the start, as a log ratio: a factor of ten. For a range that reaches zero
-/// it is the width of the range. Parameters that the data hardly determine stay near their start.
-const STRAY: f64 = std::f64::consts::LN_10;
+/// it is the width of the range. This prior keeps parameters that the data hardly determine near their start.
+const WEAK: f64 = std::f64::consts::LN_10;
 
 impl Free {
     /// Distance from the centre of the prior in standard deviations, and its derivative. The scale is logarithmic if
@@ -25,9 +25,9 @@ impl Free {
     }
 
     /// Distance from the start in standard deviations of the weak prior, and its derivative.
-    pub(super) fn strayed(&self, value: f64, start: f64) -> (f64, f64) {
+    pub(super) fn weak_prior(&self, value: f64, start: f64) -> (f64, f64) {
         if self.lower > 0.0 {
-            ((value / start.max(self.lower)).ln() / STRAY, 1.0 / (value * STRAY))
+            ((value / start.max(self.lower)).ln() / WEAK, 1.0 / (value * WEAK))
         } else {
             let width = self.upper - self.lower;
             ((value - start) / width, 1.0 / width)
@@ -36,11 +36,11 @@ impl Free {
 }
 
 /// True for a run that records one side of the car.
-pub fn of_one_side(run: &Run) -> bool {
+pub fn is_one_sided(run: &Run) -> bool {
     matches!(run.stimulus, Stimulus::Cleat(_))
 }
 
 /// True for a parameter that may differ between the sides: one with a unit.
-pub fn is_of_a_side(model: &dyn Model, free: &Free) -> bool {
+pub fn may_differ_by_side(model: &dyn Model, free: &Free) -> bool {
     model.about().parameters[free.parameter].unit != "1"
 }

@@ -3,7 +3,7 @@
 
 use nalgebra::Complex;
 
-use super::prior::{SIDE, is_of_a_side, of_one_side};
+use super::prior::{SIDE, is_one_sided, may_differ_by_side};
 use super::refit::Refit;
 use super::residual::{scaled, through};
 use crate::campaign::Role;
@@ -13,7 +13,7 @@ use crate::least_squares::Problem;
 use crate::model::Model;
 use crate::response::parameters::Values;
 
-/// True for a run with cheap derivatives: those of a sweep come from the factorisation of its prediction.
+/// True for a sweep. Its derivatives are cheap: they use the factorisation of the prediction.
 fn is_swept(run: &Run) -> bool {
     matches!(run.stimulus, Stimulus::Sweep { .. })
 }
@@ -33,33 +33,33 @@ pub struct Posterior<'a> {
     pub start: Vec<f64>,
     /// Centres of the parameter priors, which apply if there is a discrepancy.
     pub centre: Values,
-    /// Discrepancy; `None` for a fit against noise alone, and while it is learnt.
+    /// Discrepancy; `None` for a fit against noise alone, and while it is estimated.
     pub discrepancy: Option<Discrepancy>,
     /// True if the discrepancy whitens the residuals.
     pub whitens: bool,
     /// True for a fit with a discrepancy, even while [`Self::discrepancy`] is taken out.
-    pub by_evidence: bool,
+    pub has_discrepancy: bool,
     /// Number of data residuals.
     pub residuals: usize,
-    /// Why the model cannot predict the evidence; `None` once it has predicted it.
-    pub refused: Option<PredictError>,
+    /// Why the model cannot predict the evidence; `None` once a prediction has succeeded.
+    pub failure: Option<PredictError>,
     /// True once the model has predicted the evidence. A later failure means that a step was too long.
-    has_answered: bool,
+    has_predicted: bool,
     /// Non-steady part of the sweeps, series by series.
     pub unsteady: Vec<Vec<Complex<f64>>>,
-    /// Cache of the last prediction and of the last one with derivatives. An accepted step and the next round ask for
-    /// them again.
-    pub known: Vec<Known>,
+    /// Cache of the last prediction and of the last one with derivatives, which an accepted step and the next round use
+    /// again.
+    pub cache: Vec<Cached>,
 }
 
 /// Prediction of the fitted runs at a point.
-pub struct Known {
+pub struct Cached {
     at: Vec<f64>,
     /// Predictions of the sweeps, always with derivatives.
     swept: Vec<Prediction>,
     /// Predictions of all other runs.
     others: Vec<Prediction>,
-    /// True if those have derivatives too.
+    /// True if `others` have derivatives too.
     is_sloped: bool,
 }
 
@@ -71,7 +71,7 @@ impl<'a> Posterior<'a> {
         evidence: &'a Evidence,
         nuisance: Nuisance,
     ) -> Self {
-        let one_sided = evidence.runs.iter().any(of_one_side);
+        let one_sided = evidence.runs.iter().any(is_one_sided);
         let sides = std::iter::repeat_n(SIDE, if one_sided { free.len() } else { 0 });
         Self {
             model,
@@ -83,13 +83,13 @@ impl<'a> Posterior<'a> {
             centre: values.clone(),
             discrepancy: None,
             whitens: true,
-            by_evidence: false,
+            has_discrepancy: false,
             residuals: evidence.of_role(Role::Fit).map(|(_, series)| series.residuals()).sum(),
             nuisance,
-            refused: None,
-            has_answered: false,
+            failure: None,
+            has_predicted: false,
             unsteady: vec![Vec::new(); evidence.series.len()],
-            known: Vec::new(),
+            cache: Vec::new(),
             values,
         }
     }
@@ -104,7 +104,7 @@ impl<'a> Posterior<'a> {
             refit.nuisance.clone(),
         );
         posterior.discrepancy = refit.discrepancy_of(evidence);
-        posterior.by_evidence = posterior.discrepancy.is_some();
+        posterior.has_discrepancy = posterior.discrepancy.is_some();
         posterior.centre = refit.centre.clone();
         posterior
     }
@@ -113,7 +113,7 @@ impl<'a> Posterior<'a> {
     pub fn prior_of(&self, k: usize, value: f64) -> (f64, f64) {
         match self.discrepancy {
             Some(_) => self.free[k].prior(value, self.centre.as_slice()[self.free[k].parameter]),
-            None => self.free[k].strayed(value, self.start[k]),
+            None => self.free[k].weak_prior(value, self.start[k]),
         }
     }
 
@@ -128,7 +128,7 @@ impl<'a> Posterior<'a> {
         let factors = self.factors(x).to_vec();
         for (k, (free, &value)) in self.free.iter().zip(x).enumerate() {
             self.values.set(free.parameter, value);
-            let factor = factors.get(k).copied().filter(|_| is_of_a_side(self.model, free));
+            let factor = factors.get(k).copied().filter(|_| may_differ_by_side(self.model, free));
             self.side.set(free.parameter, value * factor.unwrap_or(0.0).exp());
         }
     }
@@ -139,29 +139,29 @@ impl<'a> Posterior<'a> {
     }
 
     /// Prediction of the fitted runs, with derivatives if `sloped`.
-    fn predicted(&mut self, x: &[f64], sloped: bool) -> Result<Known, PredictError> {
-        let here = self.known.iter().position(|known| known.at == x);
-        let here = here.map(|place| self.known.remove(place));
+    fn predicted(&mut self, x: &[f64], sloped: bool) -> Result<Cached, PredictError> {
+        let here = self.cache.iter().position(|cached| cached.at == x);
+        let here = here.map(|place| self.cache.remove(place));
         self.move_to(x);
         let here = match here {
-            Some(known) if known.is_sloped || !sloped => return Ok(known),
+            Some(cached) if cached.is_sloped || !sloped => return Ok(cached),
             other => other,
         };
         let both = [&self.values, &self.side];
-        let misread = self.nuisance.misread(self.evidence, &x[self.free.len()..]);
+        let conditions = self.nuisance.conditions(self.evidence, &x[self.free.len()..]);
         let predict = |free: &[Free], swept: bool| {
             let wanted = |run: &Run| run.role == Role::Fit && is_swept(run) == swept;
-            predict_sides(self.model, both, &misread, free, self.evidence, &wanted)
+            predict_sides(self.model, both, &conditions, free, self.evidence, &wanted)
         };
         let swept = match here {
-            Some(known) => known.swept,
+            Some(cached) => cached.swept,
             None => {
                 let mut swept = predict(&self.free, true)?;
                 swept.iter_mut().for_each(|own| own.add(&self.unsteady[own.series]));
                 swept
             }
         };
-        Ok(Known {
+        Ok(Cached {
             at: x.to_vec(),
             swept,
             others: predict(if sloped { &self.free } else { &[] }, false)?,
@@ -170,25 +170,25 @@ impl<'a> Posterior<'a> {
     }
 
     /// Keeps the last prediction, and the last one with derivatives.
-    fn keep(&mut self, known: Known) {
-        let is_sloped = known.is_sloped;
-        self.known.retain(|own| own.is_sloped && !is_sloped);
-        self.known.push(known);
+    fn keep(&mut self, cached: Cached) {
+        let is_sloped = cached.is_sloped;
+        self.cache.retain(|own| own.is_sloped && !is_sloped);
+        self.cache.push(cached);
     }
 
     /// Writes the residual. Returns the data rows of the Jacobian column by column if `sloped`, and no columns
     /// otherwise.
     pub fn residual_and_slopes(&mut self, x: &[f64], residual: &mut [f64], sloped: bool) -> Vec<Vec<f64>> {
-        let known = match self.predicted(x, sloped) {
-            Ok(known) => known,
+        let cached = match self.predicted(x, sloped) {
+            Ok(cached) => cached,
             Err(error) => {
-                self.refused = (!self.has_answered).then_some(error);
+                self.failure = (!self.has_predicted).then_some(error);
                 residual.fill(f64::NAN);
                 return Vec::new();
             }
         };
-        self.has_answered = true;
-        let mut predictions: Vec<&Prediction> = known.swept.iter().chain(&known.others).collect();
+        self.has_predicted = true;
+        let mut predictions: Vec<&Prediction> = cached.swept.iter().chain(&cached.others).collect();
         predictions.sort_by_key(|own| own.series);
         let mut rows = Vec::with_capacity(residual.len());
         let count = if sloped { self.variables() } else { 0 };
@@ -196,7 +196,7 @@ impl<'a> Posterior<'a> {
         for prediction in predictions {
             self.rows(prediction, x, &mut rows, &mut columns);
         }
-        self.keep(known);
+        self.keep(cached);
         if let Some(discrepancy) = self.discrepancy.as_ref().filter(|_| self.whitens) {
             discrepancy.whiten(&mut rows);
             columns.iter_mut().for_each(|column| discrepancy.whiten(column));
@@ -209,19 +209,28 @@ impl<'a> Posterior<'a> {
     }
 
     /// Appends the rows of one prediction to `residual` and to all `columns`; without columns, to the residual alone.
-    /// Several terms may add to one column: the gain of a reference scales the shown values and also sets the level of
-    /// the run.
+    /// Several terms may add to one column: the gain of a reference scales the readings and also sets the drive
+    /// amplitude of the run.
     fn rows(&self, prediction: &Prediction, x: &[f64], residual: &mut Vec<f64>, columns: &mut [Vec<f64>]) {
         let series = &self.evidence.series[prediction.series];
         // With a discrepancy, the part of the uncertainty that neighbouring values share is not noise.
-        let sigma = if self.by_evidence { &series.noise } else { &series.sigma };
+        let sigma = if self.has_discrepancy {
+            &series.noise
+        } else {
+            &series.sigma
+        };
         let of_sensors = self.free.len();
-        let shown = self
+        let reading = self
             .nuisance
-            .show(self.evidence, series, &prediction.value, &x[of_sensors..]);
+            .sensor_output(self.evidence, series, &prediction.value, &x[of_sensors..]);
         let first = residual.len();
-        let left = series.value.iter().zip(&shown.value);
-        scaled(series, sigma, left.map(|(measured, shown)| measured - shown), residual);
+        let left = series.value.iter().zip(&reading.value);
+        scaled(
+            series,
+            sigma,
+            left.map(|(measured, reading)| measured - reading),
+            residual,
+        );
         if columns.is_empty() {
             return;
         }
@@ -235,21 +244,21 @@ impl<'a> Posterior<'a> {
             let sums = columns[place][first..].iter_mut();
             sums.zip(&rows).for_each(|(sum, row)| *sum += row);
         };
-        let one_sided = of_one_side(&self.evidence.runs[series.run]);
+        let one_sided = is_one_sided(&self.evidence.runs[series.run]);
         for (k, slope) in prediction.slopes.iter().enumerate() {
-            if one_sided && is_of_a_side(self.model, &self.free[k]) {
+            if one_sided && may_differ_by_side(self.model, &self.free[k]) {
                 let factor = self.factors(x)[k].exp();
                 let of_side = of_sensors + self.nuisance.len() + k;
-                add(&mut through(slope, &shown.factor, factor), k);
-                add(&mut through(slope, &shown.factor, factor * x[k]), of_side);
+                add(&mut through(slope, &reading.factor, factor), k);
+                add(&mut through(slope, &reading.factor, factor * x[k]), of_side);
             } else {
-                add(&mut through(slope, &shown.factor, 1.0), k);
+                add(&mut through(slope, &reading.factor, 1.0), k);
             }
         }
-        for (k, slope) in self.nuisance.misread_slopes(self.evidence, prediction) {
-            add(&mut through(&slope, &shown.factor, 1.0), of_sensors + k);
+        for (k, slope) in self.nuisance.condition_slopes(self.evidence, prediction) {
+            add(&mut through(&slope, &reading.factor, 1.0), of_sensors + k);
         }
-        for (k, slope) in shown.slopes {
+        for (k, slope) in reading.slopes {
             add(&mut slope.into_iter(), of_sensors + k);
         }
     }

@@ -1,5 +1,5 @@
-//! Profile intervals of a fit: the range of each parameter outside which the posterior, maximised over all others,
-//! falls too far to be chance.
+//! Profile intervals of a fit: the range of each parameter in which the posterior, maximised over all others, stays
+//! above the limit that chance allows.
 //!
 //! The rise of the cost is in units of the fit's own standard error near the maximum, as in the
 //! [profiles](crate::fit::profile) of a linear fit. The prior of the profiled parameter is left out, so that the data
@@ -27,7 +27,7 @@ const FIRST: f64 = 0.02;
 impl Refit {
     /// The fitted part of the evidence: the fitted runs without the non-steady part of their sweeps.
     pub fn fitted_of(&self, evidence: &Evidence) -> Evidence {
-        let steady = evidence.less(&self.unsteady);
+        let steady = evidence.minus(&self.unsteady);
         steady.only(|run| steady.runs[run].role == Role::Fit)
     }
 
@@ -38,12 +38,12 @@ impl Refit {
         let (start, bounds) = (posterior.place(self), posterior.bounds());
         posterior.start.clone_from(&start);
         let row = posterior.residuals + posterior.sigmas.len() + free;
-        let mut open = Open {
+        let mut problem = WithoutPrior {
             posterior,
             row,
             variable: free,
         };
-        let minimum = minimize(&mut open, &start, &bounds, &OPTIONS);
+        let minimum = minimize(&mut problem, &start, &bounds, &OPTIONS);
         let (error, variance) = (self.stderr()[free], self.covariance[(free, free)]);
         let inflation = error * error / variance;
         let unit = 0.5
@@ -62,7 +62,7 @@ impl Refit {
                 FIRST * width
             },
         };
-        let found = profile(&mut open, &minimum, &bounds, of, &OPTIONS);
+        let found = profile(&mut problem, &minimum, &bounds, of, &OPTIONS);
         let least = found.points.iter().min_by(|a, b| a[1].total_cmp(&b[1]));
         let parameter = &model.about().parameters[self.free[free].parameter];
         ParameterProfile {
@@ -77,14 +77,14 @@ impl Refit {
 }
 
 /// A posterior without the prior of one parameter.
-struct Open<'a> {
+struct WithoutPrior<'a> {
     posterior: Posterior<'a>,
     /// Residual row of that prior.
     row: usize,
     variable: usize,
 }
 
-impl Problem for Open<'_> {
+impl Problem for WithoutPrior<'_> {
     fn variables(&self) -> usize {
         self.posterior.variables()
     }
@@ -100,8 +100,8 @@ impl Problem for Open<'_> {
     }
 
     fn evaluate_residual(&mut self, x: &[f64], residual: &mut [f64]) -> bool {
-        let answered = self.posterior.evaluate_residual(x, residual);
+        let is_computed = self.posterior.evaluate_residual(x, residual);
         residual[self.row] = 0.0;
-        answered
+        is_computed
     }
 }

@@ -3,7 +3,7 @@
 use nalgebra::{Complex, DMatrix};
 
 use crate::campaign::Role;
-use crate::discover::noise::{Beginning, Discrepancy, Nuisance};
+use crate::discover::noise::{Discrepancy, InitialState, Nuisance};
 use crate::discover::observe::{Evidence, Free, Prediction};
 use crate::least_squares::Stop;
 use crate::least_squares::information::Unseen;
@@ -46,10 +46,11 @@ pub struct Refit {
     pub centre: Values,
     /// Number of data residuals.
     pub residuals: usize,
-    /// Relative standard deviation of the mean of the measured sides from the drawing: two parts of one drawing are
-    /// measured. 0 if only one side is measured.
-    pub made: f64,
-    /// Non-steady part of each series, which a search does not predict; empty before [`settle`](super::settle()).
+    /// Relative standard deviation of the mean of both sides from the value of the design, since parts of one design
+    /// differ. 0 if only one side is measured.
+    pub side_sd: f64,
+    /// Non-steady part of each series, which a search does not predict; empty before
+    /// [`add_unsteady`](super::add_unsteady).
     pub unsteady: Vec<Vec<Complex<f64>>>,
     /// Evaluations of residual and Jacobian.
     pub evaluations: usize,
@@ -58,12 +59,12 @@ pub struct Refit {
 }
 
 impl Refit {
-    /// Standard errors of the free parameters as values of the drawing, SI: from the scatter of the residuals and from
-    /// the differences of the two sides.
+    /// Standard errors of the free parameters as values of the design, SI: from the scatter of the residuals and the
+    /// difference of the two sides.
     pub fn stderr(&self) -> Vec<f64> {
         let variances = self.covariance.diagonal();
         let of = variances.iter().zip(&self.estimate);
-        of.map(|(variance, value)| (self.scatter() * variance + (self.made * value).powi(2)).sqrt())
+        of.map(|(variance, value)| (self.scatter() * variance + (self.side_sd * value).powi(2)).sqrt())
             .collect()
     }
 
@@ -93,17 +94,17 @@ impl Refit {
     }
 
     /// Estimated initial states of the records.
-    pub fn begun(&self) -> Vec<(Beginning, f64)> {
+    pub fn initial_states(&self) -> Vec<(InitialState, f64)> {
         let coefficients = &self.coefficients[self.nuisance.of_sensors()..];
-        let beginnings = self.nuisance.beginnings.iter().cloned();
-        beginnings.zip(coefficients.iter().copied()).collect()
+        let states = self.nuisance.initial_states.iter().cloned();
+        states.zip(coefficients.iter().copied()).collect()
     }
 
-    /// The prediction as the sensors with their fitted errors show it.
-    pub fn measured(&self, evidence: &Evidence, prediction: &Prediction) -> Vec<Complex<f64>> {
+    /// Readings of a sensor with its fitted errors for a prediction.
+    pub fn sensor_output(&self, evidence: &Evidence, prediction: &Prediction) -> Vec<Complex<f64>> {
         let series = &evidence.series[prediction.series];
         self.nuisance
-            .show(evidence, series, &prediction.value, &self.coefficients)
+            .sensor_output(evidence, series, &prediction.value, &self.coefficients)
             .value
     }
 }

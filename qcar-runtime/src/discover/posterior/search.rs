@@ -4,17 +4,17 @@ use nalgebra::{DMatrix, DVector};
 
 use super::problem::Posterior;
 use super::refit::Refit;
-use crate::discover::noise::STRAINED;
+use crate::discover::noise::CALIBRATION_BOUND;
 use crate::discover::observe::PredictError;
 use crate::least_squares::{Bounds, Options, Outcome, Problem, minimize};
 
-/// Largest side difference in prior standard deviations: a model must not explain a missing effect by sides that no car
-/// has.
-const MOST: f64 = 3.0;
+/// Largest log factor of a side in prior standard deviations, so that a fit cannot explain a missing effect by an
+/// unrealistic difference of the sides.
+const SIDE_BOUND: f64 = 3.0;
 
-/// Largest sensor error in prior standard deviations if a discrepancy is fitted. Larger errors do not occur in practice,
-/// and the bound keeps the search finite.
-const FARTHEST: f64 = 6.0;
+/// Largest sensor error in prior standard deviations if a discrepancy is fitted. Larger errors do not occur in practice;
+/// the prior limits them, and this bound is only a safeguard.
+const ERROR_BOUND: f64 = 6.0;
 
 impl Posterior<'_> {
     /// Least-squares minimum from `start`.
@@ -28,17 +28,24 @@ impl Posterior<'_> {
         let bounds = self.bounds();
         self.start = start.to_vec();
         let outcome = minimize(self, start, &bounds, &options);
-        self.refused.take().map_or(Ok(outcome), Err)
+        self.failure.take().map_or(Ok(outcome), Err)
     }
 
     /// Bounds of the parameters, the sensor errors and the side factors.
     pub fn bounds(&self) -> Bounds {
         let (sensors, sides) = self.sigmas.split_at(self.nuisance.len());
-        let sides = sides.iter().map(|sigma| MOST * sigma);
-        // With a discrepancy, the prior holds the sensor errors; the bound is only a safeguard.
-        let strained = if self.discrepancy.is_some() { FARTHEST } else { STRAINED };
-        let priors: Vec<f64> = sensors.iter().map(|sigma| strained * sigma).chain(sides).collect();
-        let lower = self.free.iter().map(|f| f.lower).chain(priors.iter().map(|most| -most));
+        let sides = sides.iter().map(|sigma| SIDE_BOUND * sigma);
+        let most = if self.discrepancy.is_some() {
+            ERROR_BOUND
+        } else {
+            CALIBRATION_BOUND
+        };
+        let priors: Vec<f64> = sensors.iter().map(|sigma| most * sigma).chain(sides).collect();
+        let lower = self
+            .free
+            .iter()
+            .map(|f| f.lower)
+            .chain(priors.iter().map(|bound| -bound));
         let upper = self.free.iter().map(|f| f.upper).chain(priors.iter().copied());
         Bounds {
             lower: lower.collect(),
@@ -54,20 +61,20 @@ impl Posterior<'_> {
                 outcome = self.search(&place, evaluations)?;
             }
             place.clone_from(&outcome.x);
-            self.learn(&place);
+            self.estimate_discrepancy(&place);
         }
         let mut residual = DVector::zeros(self.residuals());
         let mut jacobian = DMatrix::zeros(self.residuals(), self.variables());
         self.evaluate(&place, residual.as_mut_slice(), jacobian.as_mut_slice());
-        // The change of cost by the discrepancy is no gain of the search.
+        // A change of the cost by the new discrepancy does not count as gain of the search.
         outcome.start_cost += residual.norm_squared() / 2.0 - outcome.cost;
         outcome.cost = residual.norm_squared() / 2.0;
         outcome.jacobian = jacobian;
         Ok(self.refit(outcome))
     }
 
-    /// Learns the discrepancy from the residuals at a point.
-    pub fn learn(&mut self, place: &[f64]) {
+    /// Estimates the discrepancy from the residuals at a point.
+    pub fn estimate_discrepancy(&mut self, place: &[f64]) {
         let Some(mut discrepancy) = self.discrepancy.take() else {
             return;
         };
@@ -75,7 +82,7 @@ impl Posterior<'_> {
         self.residual_and_slopes(place, &mut residual, false);
         residual.truncate(self.residuals);
         if residual.iter().all(|r| r.is_finite()) {
-            discrepancy.learn(&residual);
+            discrepancy.estimate(&residual);
         }
         self.discrepancy = Some(discrepancy);
     }

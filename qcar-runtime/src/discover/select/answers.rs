@@ -1,8 +1,8 @@
 //! The names in the answer: the smallest set of hypotheses that reaches the required probability (a credible set).
 
-use super::bagged::probabilities;
-use super::judging::predictive;
-use super::set::{Set, is_part, most_probable, nameless};
+use super::held_out::supported_part;
+use super::probability::probabilities;
+use super::set::{Set, best_base, is_part, most_probable};
 use crate::discover::numbers::Numbers;
 use crate::discover::observe::Evidence;
 
@@ -11,19 +11,25 @@ pub struct Answer {
     /// Position of the most probable of these sets.
     pub set: usize,
     pub probability: f64,
-    /// True if these names are no answer: the held-out runs support none of them, or they are a limiting case of the
-    /// most probable answer.
+    /// True if these names cannot be the answer: the held-out runs support none of them, or they are a limiting case of
+    /// the most probable answer.
     pub dismissed: bool,
 }
 
 /// The answers, most probable first. Merges sets with the same names.
 pub fn answers(sets: &[Set], evidence: &Evidence) -> Vec<Answer> {
     let probability = probabilities(&sets.iter().collect::<Vec<_>>(), evidence);
-    let left: Vec<usize> = (0..sets.len()).map(|place| predictive(sets, place, evidence)).collect();
+    let supported: Vec<usize> = (0..sets.len())
+        .map(|place| supported_part(sets, place, evidence))
+        .collect();
     let mut answers: Vec<Answer> = Vec::new();
     for (place, probability) in probability.iter().copied().enumerate() {
-        let dismissed = left[place] != place && sets[left[place]].names().is_empty();
-        let set = if dismissed { place } else { standing(place, sets, &left) };
+        let dismissed = supported[place] != place && sets[supported[place]].names().is_empty();
+        let set = if dismissed {
+            place
+        } else {
+            represented_by(place, sets, &supported)
+        };
         let is_it = |own: &&mut Answer| own.dismissed == dismissed && sets[own.set].names() == sets[set].names();
         match answers.iter_mut().find(is_it) {
             Some(own) => {
@@ -42,26 +48,26 @@ pub fn answers(sets: &[Set], evidence: &Evidence) -> Vec<Answer> {
     answers.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     let first = answers[0].set;
     for own in &mut answers[1..] {
-        own.dismissed |= sets[own.set].is_a_limit_beside(&sets[first]);
+        own.dismissed |= sets[own.set].is_limiting_case_of(&sets[first]);
     }
     answers
 }
 
-/// The set that a set counts for. If the held-out runs support the whole set, that is the set itself. Otherwise it is the
-/// most probable fully supported set that contains the supported part: the part shows what is there, not that nothing else
-/// is.
-fn standing(place: usize, sets: &[Set], left: &[usize]) -> usize {
-    if left[place] == place {
+/// The set to whose probability a set contributes. If the held-out runs support the whole set, that is the set itself.
+/// Otherwise it is the most probable fully supported set that contains the supported part: the part shows that its effects
+/// are present, but not that no other is.
+fn represented_by(place: usize, sets: &[Set], supported: &[usize]) -> usize {
+    if supported[place] == place {
         return place;
     }
-    let part = left[place];
-    let speaks = |&other: &usize| left[other] == other && is_part(&sets[part], &sets[other]);
-    most_probable(sets, (0..sets.len()).filter(speaks)).unwrap_or(part)
+    let part = supported[place];
+    let is_supported = |&other: &usize| supported[other] == other && is_part(&sets[part], &sets[other]);
+    most_probable(sets, (0..sets.len()).filter(is_supported)).unwrap_or(part)
 }
 
-/// The credible set: the most probable names that together reach the required probability, without those that only add
-/// effects to another member. It is the base model alone if the most probable names are dismissed, or if the base
-/// model's probability exceeds the accepted doubt.
+/// The credible set: the most probable names that together reach the required probability, without names that only add
+/// effects to another member. It is the base model alone if the most probable names are dismissed, or if the
+/// probability of the base model exceeds the accepted doubt.
 pub fn credible(sets: &[Set], answers: &[Answer], numbers: &Numbers) -> Vec<usize> {
     let is_named = |own: &&Answer| !sets[own.set].names().is_empty();
     let none: f64 = answers
@@ -70,20 +76,21 @@ pub fn credible(sets: &[Set], answers: &[Answer], numbers: &Numbers) -> Vec<usiz
         .map(|own| own.probability)
         .sum();
     if answers[0].dismissed || none > numbers.doubt {
-        return vec![nameless(sets)];
+        return vec![best_base(sets)];
     }
-    let standing = answers.iter().filter(|own| is_named(own) && !own.dismissed);
-    let all: f64 = standing.clone().map(|own| own.probability).sum();
+    let possible = answers.iter().filter(|own| is_named(own) && !own.dismissed);
+    let all: f64 = possible.clone().map(|own| own.probability).sum();
     let mut sum = 0.0;
-    let held = standing.take_while(|own| {
+    let credible = possible.take_while(|own| {
         let wanted = sum < numbers.certain() * all;
         sum += own.probability;
         wanted
     });
-    let held: Vec<usize> = held.map(|own| own.set).collect();
+    let credible: Vec<usize> = credible.map(|own| own.set).collect();
     let adds = |place: &usize| {
-        held.iter()
+        credible
+            .iter()
             .any(|other| other != place && is_part(&sets[*other], &sets[*place]))
     };
-    held.iter().copied().filter(|place| !adds(place)).collect()
+    credible.iter().copied().filter(|place| !adds(place)).collect()
 }

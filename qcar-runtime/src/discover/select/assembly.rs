@@ -6,9 +6,9 @@ use std::sync::Arc;
 use super::unknowns::Unknowns;
 use crate::campaign::Role;
 use crate::discover::candidate::{Added, Candidate, Change, Workshop};
-use crate::discover::noise::{Beginning, Discrepancy, Form, Nuisance};
+use crate::discover::noise::{Discrepancy, Form, InitialState, Nuisance};
 use crate::discover::observe::{Evidence, Free, PredictError};
-use crate::discover::posterior::{Explanation, Gap, Given, Refit, Setting, Start, fit, settle};
+use crate::discover::posterior::{Explanation, Given, Misfit, Refit, Setting, Start, add_unsteady, fit};
 use crate::model::Model;
 use crate::response::parameters::Values;
 
@@ -61,7 +61,7 @@ pub struct Place {
     /// Coefficients of the sensor errors.
     pub errors: Vec<f64>,
     /// Initial states of the records.
-    pub begun: Vec<(Beginning, f64)>,
+    pub initial_states: Vec<(InitialState, f64)>,
     /// Discrepancy at which the fit starts.
     pub discrepancy: Discrepancy,
 }
@@ -73,7 +73,7 @@ impl Place {
             named: BTreeMap::new(),
             sides: BTreeMap::new(),
             errors: Vec::new(),
-            begun: Vec::new(),
+            initial_states: Vec::new(),
             discrepancy: Discrepancy::of(evidence, Role::Fit),
         }
     }
@@ -111,16 +111,16 @@ impl Assembly {
 
     /// Every effect at every place, without those already in the assembly.
     pub fn candidates(&self) -> Vec<Candidate> {
-        self.not_yet_there(self.workshop.candidates())
+        self.without_present(self.workshop.candidates())
     }
 
     /// Every law without a named cause at every place, without those already in the assembly.
     pub fn laws(&self) -> Vec<Candidate> {
-        self.not_yet_there(self.workshop.laws())
+        self.without_present(self.workshop.laws())
     }
 
     /// Removes candidates whose effect and place are already in the assembly.
-    fn not_yet_there(&self, candidates: Vec<Candidate>) -> Vec<Candidate> {
+    fn without_present(&self, candidates: Vec<Candidate>) -> Vec<Candidate> {
         let is_new = |candidate: &Candidate| {
             let is_there = |own: &Placed| own.effect == candidate.effect && own.at == candidate.at;
             !self.effects.iter().any(is_there)
@@ -128,7 +128,7 @@ impl Assembly {
         candidates.into_iter().filter(is_new).collect()
     }
 
-    /// The assembly as a hypothesis.
+    /// The model of the assembly, ready to be fitted.
     pub fn hypothesis(&self) -> Hypothesis<'_> {
         Hypothesis {
             model: self.workshop.model(),
@@ -144,9 +144,9 @@ impl Assembly {
         match &candidate.change {
             Change::Model { model, parameters } => {
                 hypothesis.model = &**model;
-                hypothesis.given.extend(unknown(parameters));
+                hypothesis.given.extend(free_parameters(parameters));
             }
-            Change::Sensor { .. } => hypothesis.nuisance = suspecting(&self.nuisance, candidate)?,
+            Change::Sensor { .. } => hypothesis.nuisance = with_suspected_sensor(&self.nuisance, candidate)?,
         }
         Some(hypothesis)
     }
@@ -158,9 +158,9 @@ impl Assembly {
             Change::Model { parameters, .. } => {
                 let form = candidate.form.as_deref();
                 assembly.workshop = Arc::from(self.workshop.with(&candidate.effect, &candidate.at, form)?);
-                assembly.setting.given.extend(unknown(parameters));
+                assembly.setting.given.extend(free_parameters(parameters));
             }
-            Change::Sensor { .. } => assembly.nuisance = suspecting(&self.nuisance, candidate)?,
+            Change::Sensor { .. } => assembly.nuisance = with_suspected_sensor(&self.nuisance, candidate)?,
         }
         assembly.effects.push(Placed {
             effect: candidate.effect.clone(),
@@ -185,7 +185,7 @@ impl Assembly {
 }
 
 /// Free parameters of an effect.
-fn unknown(parameters: &[Added]) -> impl Iterator<Item = Given> {
+fn free_parameters(parameters: &[Added]) -> impl Iterator<Item = Given> {
     let unknown = parameters.iter().filter(|parameter| !parameter.known);
     unknown.map(|parameter| Given {
         name: parameter.name.clone(),
@@ -195,7 +195,7 @@ fn unknown(parameters: &[Added]) -> impl Iterator<Item = Given> {
 }
 
 /// Sensor errors with that of a candidate added; `None` if it is no sensor candidate or the evidence lacks the sensor.
-fn suspecting(nuisance: &Nuisance, candidate: &Candidate) -> Option<Nuisance> {
+fn with_suspected_sensor(nuisance: &Nuisance, candidate: &Candidate) -> Option<Nuisance> {
     let Change::Sensor {
         location,
         axis,
@@ -214,7 +214,7 @@ fn suspecting(nuisance: &Nuisance, candidate: &Candidate) -> Option<Nuisance> {
     };
     nuisance
         .clone()
-        .suspecting(location, *axis, *form, width / 12.0_f64.sqrt())
+        .with_suspect(location, *axis, *form, width / 12.0_f64.sqrt())
 }
 
 impl<'a> Hypothesis<'a> {
@@ -223,13 +223,13 @@ impl<'a> Hypothesis<'a> {
         self.model
     }
 
-    /// The nuisance parameters of a fit of the present model with the suspected sensor errors of this hypothesis, and
+    /// The nuisance parameters of `refit`, with the suspected sensor errors of this hypothesis instead of its own, and
     /// their coefficients at `place`.
     pub fn nuisance_at(&self, refit: &Refit, place: &Place) -> (Nuisance, Vec<f64>) {
         let mut nuisance = refit.nuisance.clone();
         nuisance.suspects.clone_from(&self.nuisance.suspects);
-        let begun = &refit.coefficients[refit.nuisance.of_sensors()..];
-        (nuisance, place.errors.iter().chain(begun).copied().collect())
+        let initial_states = &refit.coefficients[refit.nuisance.of_sensors()..];
+        (nuisance, place.errors.iter().chain(initial_states).copied().collect())
     }
 
     /// Number of coefficients of its sensor errors.
@@ -292,7 +292,7 @@ impl<'a> Hypothesis<'a> {
         let start = Start {
             values: &self.values(&from.named)?,
             errors: &errors,
-            begun: &from.begun,
+            initial_states: &from.initial_states,
             centre: &self.values(&BTreeMap::new())?,
             discrepancy: from.discrepancy.carried_to(evidence, Role::Fit),
         };
@@ -304,11 +304,11 @@ impl<'a> Hypothesis<'a> {
     /// # Errors
     /// Fails if the model cannot predict the evidence.
     pub fn explanation(&self, refit: Refit, evidence: &Evidence) -> Result<Explanation, PredictError> {
-        let refit = settle(self.model, refit, evidence)?;
-        let gap = Gap::of(self.model, &refit, evidence)?;
+        let refit = add_unsteady(self.model, refit, evidence)?;
+        let misfit = Misfit::of(self.model, &refit, evidence)?;
         let names = self.model.about().parameters.iter().map(|p| p.name.to_string());
         let named = names.zip(refit.values.as_slice().iter().copied()).collect();
-        Ok(Explanation { named, refit, gap })
+        Ok(Explanation { named, refit, misfit })
     }
 
     /// The optimum of a fit as a start point.
@@ -328,7 +328,7 @@ impl<'a> Hypothesis<'a> {
             named: named.collect(),
             sides: refit.free.iter().map(side).collect(),
             errors: refit.coefficients[..refit.nuisance.of_sensors()].to_vec(),
-            begun: refit.begun(),
+            initial_states: refit.initial_states(),
             discrepancy: refit.discrepancy.clone().expect("a fit by evidence has a discrepancy"),
         }
     }

@@ -1,22 +1,22 @@
 //! Replaces one effect of a set by a rival.
 //!
-//! An effect beats its rivals before the later effects are added. The effects still missing then bias that choice:
-//! unmodelled body bending or a sensor delay can favour the wrong effect. So each rival is fitted again beside the
-//! later effects.
+//! An effect is preferred to its rivals before later effects are added. The effects still missing at that time bias the
+//! choice: unmodelled bending of the body or a sensor delay can favour the wrong effect. So each rival is fitted again
+//! together with the later effects.
 
 use rayon::prelude::*;
 
 use super::assembly::Placed;
-use super::explained;
+use super::finite_explanation;
 use super::set::Set;
 use crate::discover::observe::Evidence;
 
-/// Fitted sets in which one effect is replaced by a rival. A rival is tried if it was behind by less than the later
-/// effects gained, since they may gain as much beside the rival.
+/// Fitted sets in which one effect is replaced by a rival. A rival is tried if its log posterior was lower by less than
+/// the later effects gained, since they may gain as much together with the rival.
 pub fn exchanges(set: &Set, sets: &[Set], evidence: &Evidence) -> Vec<Set> {
     let last = set.assembly.effects().len() - 1;
     let rivals = (0..last).flat_map(|place| {
-        let chosen = sets.iter().find(|other| is_begun_with(set, other, place + 1));
+        let chosen = sets.iter().find(|other| starts_with(set, other, place + 1));
         let rivals = sets.iter().filter(move |other| competed(set, other, place));
         chosen
             .into_iter()
@@ -32,7 +32,7 @@ pub fn exchanges(set: &Set, sets: &[Set], evidence: &Evidence) -> Vec<Set> {
 }
 
 /// True if the other set consists of the first `count` effects of this set.
-fn is_begun_with(set: &Set, other: &Set, count: usize) -> bool {
+fn starts_with(set: &Set, other: &Set, count: usize) -> bool {
     let (own, others) = (set.assembly.effects(), other.assembly.effects());
     others.len() == count && own.iter().zip(others).all(|(own, other)| is_same(own, other))
 }
@@ -66,9 +66,9 @@ fn exchanged(set: &Set, chosen: &Set, rival: &Set, sets: &[Set], evidence: &Evid
         from.named.entry(name).or_insert(value);
     }
     from.discrepancy = there.discrepancy;
-    let steady = evidence.less(&rival.explanation.refit.unsteady).hurried();
+    let steady = evidence.minus(&rival.explanation.refit.unsteady).with_step_limit();
     let refit = hypothesis.fit(&from, &super::fidelity(&steady).fine, (2, 15)).ok()?;
-    let explanation = explained(&hypothesis, refit, evidence)?;
+    let explanation = finite_explanation(&hypothesis, refit, evidence)?;
     let prior = rival.log_prior + set.log_prior - chosen.log_prior;
     Some(Set::new(assembly, explanation, prior))
 }

@@ -1,14 +1,14 @@
-//! Learns a law if the catalogue has none: fits free curves at every place as it fits effects. The evidence penalises
-//! each of their coefficients.
+//! Learns a law that the catalogue lacks: fits free curves at every place like effects. The evidence penalises each
+//! coefficient of a curve.
 
 use rayon::prelude::*;
 
 use super::assembly::Placed;
-use super::judging::predicts;
+use super::held_out::predicts_better;
 use super::race::{Finalist, race};
-use super::screen::Prospect;
-use super::set::{Set, closed, is_missing};
-use super::{News, Progress, explained, fidelity};
+use super::screen::Screened;
+use super::set::{Set, explained_share, is_missing};
+use super::{Progress, Update, fidelity, finite_explanation};
 use crate::discover::answer::{Finding, Learned};
 use crate::discover::observe::Evidence;
 
@@ -27,41 +27,40 @@ pub fn learn(base: &Set, first: Option<Set>, evidence: &Evidence, progress: Prog
             break;
         }
         let laws = more.assembly.effects().len() - base.assembly.effects().len();
-        let enough = closed(&base.explanation, &more.explanation, evidence) >= evidence.numbers.explained();
+        let enough = explained_share(&base.explanation, &more.explanation, evidence) >= evidence.numbers.explained();
         if laws < MOST_LAWS && !enough {
             next = with_law(&more, evidence, progress);
         }
         best = Some(more);
     }
-    // The held-out score leaves out the parameter uncertainty of the law, so a law is overconfident outside the range
-    // of the fitted runs. If the base model is far off, a law that explains most of the excess residual still shows
-    // what is missing.
-    let closes_most =
-        |best: &Set| closed(&base.explanation, &best.explanation, evidence) >= evidence.numbers.explained();
-    best.filter(|best| holds(best, base, evidence) || is_missing(base, evidence) && closes_most(best))
+    // The held-out score neglects the parameter uncertainty of the law, which makes it too strict outside the range of
+    // the fitted runs. If an effect is missing, a law that explains most of the excess residual is still useful.
+    let explains_most =
+        |best: &Set| explained_share(&base.explanation, &best.explanation, evidence) >= evidence.numbers.explained();
+    best.filter(|best| is_supported(best, base, evidence) || is_missing(base, evidence) && explains_most(best))
 }
 
 /// True if the evidence supports the learned laws and they predict the held-out runs better than `base`.
-pub fn holds(learned: &Set, base: &Set, evidence: &Evidence) -> bool {
-    let is_wanted = learned.log_posterior() > base.log_posterior();
-    let closes = closed(&base.explanation, &learned.explanation, evidence) > 0.0;
-    is_wanted && closes && predicts(learned, base, evidence)
+pub fn is_supported(learned: &Set, base: &Set, evidence: &Evidence) -> bool {
+    let is_more_probable = learned.log_posterior() > base.log_posterior();
+    let explained = explained_share(&base.explanation, &learned.explanation, evidence) > 0.0;
+    is_more_probable && explained && predicts_better(learned, base, evidence)
 }
 
 /// The set with the most probable law at its most probable place; `None` if no law can be fitted.
 pub fn with_law(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Option<Set> {
     let laws = set.assembly.laws();
-    progress(News::Doing(&format!("learning a law at {} places", laws.len())));
+    progress(Update::Step(&format!("learning a law at {} places", laws.len())));
     let refit = &set.explanation.refit;
     let here = set.assembly.hypothesis().place(refit);
-    // A law changes little at its start values, so the screening has no basis to drop one.
-    let start = |candidate: usize| Prospect {
+    // At its start values a law changes the model little, so a screening could not rank the laws.
+    let start = |candidate: usize| Screened {
         candidate,
         starts: vec![(here.clone(), 0.0)],
-        afresh: None,
+        unscreened: None,
     };
-    let all: Vec<Prospect> = (0..laws.len()).map(start).collect();
-    let steady = evidence.less(&refit.unsteady).hurried();
+    let all: Vec<Screened> = (0..laws.len()).map(start).collect();
+    let steady = evidence.minus(&refit.unsteady).with_step_limit();
     let (finalists, _) = race(
         &set.assembly,
         &laws,
@@ -73,15 +72,15 @@ pub fn with_law(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Optio
     let fitted = finalists.into_par_iter().filter_map(|Finalist { candidate, refit }| {
         let candidate = &laws[candidate];
         let hypothesis = set.assembly.hypothesis_with(candidate)?;
-        let explanation = explained(&hypothesis, refit, evidence)?;
+        let explanation = finite_explanation(&hypothesis, refit, evidence)?;
         Some(Set::new(set.assembly.with(candidate)?, explanation, prior))
     });
     fitted.max_by(|a, b| a.log_posterior().total_cmp(&b.log_posterior()))
 }
 
-/// The learned laws as they are reported.
-pub fn told(base: &Set, learned: Set, evidence: &Evidence) -> Learned {
-    let explained = closed(&base.explanation, &learned.explanation, evidence);
+/// The learned laws for the report.
+pub fn summary(base: &Set, learned: Set, evidence: &Evidence) -> Learned {
+    let explained = explained_share(&base.explanation, &learned.explanation, evidence);
     let laws = learned.assembly.effects().iter();
     let law = |own: &Placed| Finding {
         effect: own.effect.clone(),
@@ -89,7 +88,7 @@ pub fn told(base: &Set, learned: Set, evidence: &Evidence) -> Learned {
         form: own.form.clone(),
         parameters: own.unknowns.parameters(&learned.explanation),
         evidence: learned.explanation.refit.log_evidence - base.explanation.refit.log_evidence,
-        closed: explained,
+        explained,
         rivals: Vec::new(),
     };
     Learned {

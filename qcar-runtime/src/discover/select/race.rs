@@ -1,15 +1,15 @@
 //! Selects the best of many candidates by successive halving on the evidence (Jamieson and Talwalkar, AISTATS 2016).
 //!
-//! Each round roughly doubles the budget and halves the number of candidates. A candidate that is behind stays as long
-//! as its last search gained at least as much as it is behind.
+//! Each round roughly doubles the budget and halves the number of candidates. A candidate stays as long as its last search
+//! gained at least the distance of its evidence to the best.
 
 use std::collections::{BTreeMap, HashSet};
 
 use rayon::prelude::*;
 
 use super::assembly::{Assembly, Hypothesis, Place};
-use super::screen::Prospect;
-use super::{BEAM, News, Progress};
+use super::screen::Screened;
+use super::{BEAM, Progress, Update};
 use crate::discover::candidate::Candidate;
 use crate::discover::observe::Evidence;
 use crate::discover::posterior::Refit;
@@ -62,16 +62,16 @@ const ROUNDS: [Round; 4] = [
     },
 ];
 
-/// Number of runners up to which a candidate enters with all its starts; later candidates enter with their best start.
-const STARTED: usize = 9;
-/// Log evidence difference below which candidates are not separated before the last round: odds of one to twenty
-/// thousand.
-const CLOSE: f64 = 10.0;
+/// Number of runners up to which a candidate enters with all its starts; further candidates enter with their best start.
+const WITH_ALL_STARTS: usize = 9;
+/// Log evidence difference up to which a candidate stays before the last round, whatever its search gained: odds of one
+/// to twenty thousand.
+const NOT_SEPARATED: f64 = 10.0;
 /// Number of candidates with the largest gain that enter, whatever their place and form.
 const ENTRANTS: usize = 6;
-/// Factor on the evaluations of a linear model. They are cheap, and a third of them would drop a light mass on mounts
-/// before its mode is found.
-const LINEAR: usize = 3;
+/// Factor on the number of evaluations of a linear model, which are cheap. Without it, a light mass on mounts would be
+/// dropped before the fit finds its mode.
+const LINEAR_FACTOR: usize = 3;
 
 /// A candidate after its fit to all fitted runs.
 pub struct Finalist {
@@ -113,7 +113,7 @@ impl Runner<'_> {
 pub fn race(
     assembly: &Assembly,
     candidates: &[Candidate],
-    entering: &[&Prospect],
+    entering: &[&Screened],
     fidelity: &Fidelity,
     progress: Progress<'_>,
 ) -> (Vec<Finalist>, Vec<Dropped>) {
@@ -122,16 +122,16 @@ pub fn race(
         .map(|own| assembly.hypothesis_with(&candidates[own.candidate]))
         .collect();
     let mut field: Vec<Runner<'_>> = Vec::new();
-    for (prospect, hypothesis) in entering.iter().zip(&hypotheses) {
+    for (own, hypothesis) in entering.iter().zip(&hypotheses) {
         let Some(hypothesis) = hypothesis else { continue };
-        let starts = if field.len() < STARTED {
-            prospect.starts.len()
+        let starts = if field.len() < WITH_ALL_STARTS {
+            own.starts.len()
         } else {
             1
         };
-        let starts = prospect.starts[..starts].iter().map(|(place, _)| place);
-        field.extend(starts.chain(&prospect.afresh).map(|place| Runner {
-            candidate: prospect.candidate,
+        let starts = own.starts[..starts].iter().map(|(place, _)| place);
+        field.extend(starts.chain(&own.unscreened).map(|place| Runner {
+            candidate: own.candidate,
             hypothesis,
             place: place.clone(),
             refit: None,
@@ -139,11 +139,11 @@ pub fn race(
     }
     let mut dropped = Vec::new();
     for (number, round) in ROUNDS.iter().enumerate() {
-        progress(News::Far(number, ROUNDS.len()));
-        let seen = (round.evidence)(fidelity);
+        progress(Update::Done(number, ROUNDS.len()));
+        let data = (round.evidence)(fidelity);
         field = field
             .into_par_iter()
-            .filter_map(|runner| run(runner, seen, round))
+            .filter_map(|runner| run(runner, data, round))
             .collect();
         let last = number + 1 == ROUNDS.len();
         let (stay, left) = best(field, candidates, round, number > 0);
@@ -162,24 +162,24 @@ pub fn race(
 }
 
 /// Candidates for the first round, among those with a positive gain: the ones with the largest gain, the best of each
-/// place, and the best of each form of each effect. The screening shows whether something is missing; the fits show
-/// what. A model fitted without an effect may have to move far before that effect gains much.
-pub fn entrants<'p>(candidates: &[Candidate], prospects: &'p [Prospect]) -> Vec<&'p Prospect> {
+/// place, and the best of each form of each effect. The screening shows that something is missing, the fits show
+/// what: the parameters of a model without an effect may have to change much before the effect gains much.
+pub fn entrants<'p>(candidates: &[Candidate], screened: &'p [Screened]) -> Vec<&'p Screened> {
     let (mut places, mut forms) = (HashSet::new(), HashSet::new());
-    let enters = |(rank, prospect): &(usize, &Prospect)| {
-        let own = &candidates[prospect.candidate];
+    let enters = |(rank, entry): &(usize, &Screened)| {
+        let own = &candidates[entry.candidate];
         let is_first_there = places.insert(own.at.as_str());
         let is_first_of_its_form = forms.insert((own.effect.as_str(), own.form.as_deref()));
-        prospect.gain() > 0.0 && (*rank < ENTRANTS || is_first_there || is_first_of_its_form)
+        entry.gain() > 0.0 && (*rank < ENTRANTS || is_first_there || is_first_of_its_form)
     };
-    let entering = prospects.iter().enumerate().filter(enters);
-    entering.map(|(_, prospect)| prospect).collect()
+    let entering = screened.iter().enumerate().filter(enters);
+    entering.map(|(_, entry)| entry).collect()
 }
 
 fn run<'a>(mut runner: Runner<'a>, evidence: &Evidence, round: &Round) -> Option<Runner<'a>> {
     let (rounds, evaluations) = round.budget;
     let times = if runner.hypothesis.model().about().linear {
-        LINEAR
+        LINEAR_FACTOR
     } else {
         1
     };
@@ -213,8 +213,8 @@ fn best<'a>(
         let name = (own.effect.as_str(), own.at.as_str());
         let known = names.contains(&name);
         let behind = first - runner.evidence();
-        // A candidate that is further behind than its last search gained will not come first.
-        let improves = behind <= runner.gained().max(CLOSE);
+        // A candidate further behind than its last search gained will hardly become the best.
+        let improves = behind <= runner.gained().max(NOT_SEPARATED);
         let is_best_there = !late && !places.contains(&name.1);
         let is_of_beam = names.len() < BEAM;
         let wanted = improves && (known || names.len() < round.kept)
@@ -244,7 +244,7 @@ mod tests {
     use super::{ENTRANTS, entrants};
     use crate::discover::candidate::{Added, Candidate, Change, ParameterRole};
     use crate::discover::noise::Form;
-    use crate::discover::select::screen::Prospect;
+    use crate::discover::select::screen::Screened;
 
     fn candidate(effect: &str, at: &str) -> Candidate {
         let parameter = Added {
@@ -286,13 +286,13 @@ mod tests {
         ];
         let all = (0..ENTRANTS).map(law).chain(later);
         let (candidates, gains): (Vec<Candidate>, Vec<f64>) = all.unzip();
-        let prospect = |(candidate, gain)| Prospect {
+        let entry = |(candidate, gain)| Screened {
             candidate,
             starts: vec![(Place::default(), gain)],
-            afresh: None,
+            unscreened: None,
         };
-        let prospects: Vec<Prospect> = gains.into_iter().enumerate().map(prospect).collect();
-        let later = entrants(&candidates, &prospects).into_iter().skip(ENTRANTS);
+        let screened: Vec<Screened> = gains.into_iter().enumerate().map(entry).collect();
+        let later = entrants(&candidates, &screened).into_iter().skip(ENTRANTS);
         let later: Vec<usize> = later.map(|own| own.candidate - ENTRANTS).collect();
         assert_eq!(later, [0, 1, 3]);
     }

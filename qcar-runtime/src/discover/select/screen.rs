@@ -1,7 +1,7 @@
 //! Screens candidates without a fit: the gain of each, to first order in all other unknowns.
 //!
-//! A candidate at given values changes the predicted residuals by `g`. The part of `g` that the other unknowns can
-//! imitate is projected out, and the rest is compared with the projected residual. This is the score test of C. R. Rao
+//! A candidate at given values changes the residuals by `g`. The part of `g` that changes of the other unknowns can
+//! reproduce is projected out, and the rest is compared with the projected residual. This is the score test of C. R. Rao
 //! (Proc. Cambridge Phil. Soc. 44, 1948) with a finite step. The magnitude of the effect is scaled to its largest gain;
 //! its shape parameters are tried on a grid.
 
@@ -18,20 +18,20 @@ use crate::discover::observe::Evidence;
 use crate::discover::posterior::Refit;
 
 /// A candidate with the start points of its fits.
-pub struct Prospect {
+pub struct Screened {
     /// Its position among the candidates.
     pub candidate: usize,
     /// Start points, best first, each with its predicted gain in log likelihood.
     pub starts: Vec<(Place, f64)>,
-    /// A further start point that the screening has not assessed.
-    pub afresh: Option<Place>,
+    /// A further start point, which the screening has not assessed.
+    pub unscreened: Option<Place>,
 }
 
-impl Prospect {
+impl Screened {
     /// Adds a start at `place` with the default values of the candidate.
     pub fn start_from(&mut self, place: &Place, assembly: &Assembly, candidate: &Candidate) {
         let hypothesis = assembly.hypothesis_with(candidate);
-        self.afresh = hypothesis.map(|own| Point::usual(candidate).at(place, &own, candidate));
+        self.unscreened = hypothesis.map(|own| Point::at_start(candidate).at(place, &own, candidate));
     }
 
     /// Predicted gain of the best start in log likelihood; 0 without a start.
@@ -52,10 +52,10 @@ const FEW_SHAPES: &[f64] = &[0.0, -0.5, 0.5];
 const OTHERS: [f64; 2] = [-0.5, 0.5];
 
 /// Screens all candidates; the largest gain comes first. Leaves out those that cannot be predicted.
-pub fn screen(assembly: &Assembly, candidates: &[Candidate], refit: &Refit, evidence: &Evidence) -> Vec<Prospect> {
+pub fn screen(assembly: &Assembly, candidates: &[Candidate], refit: &Refit, evidence: &Evidence) -> Vec<Screened> {
     let here = assembly.hypothesis().place(refit);
     let tangent = Tangent::new(refit, assembly, evidence);
-    let alone = tangent.gain_alone();
+    let without = tangent.gain_without_candidate();
     let all = candidates.par_iter().enumerate().filter_map(|(place, candidate)| {
         let hypothesis = assembly.hypothesis_with(candidate)?;
         let tried = grid(candidate).into_par_iter().filter_map(|point| {
@@ -69,24 +69,24 @@ pub fn screen(assembly: &Assembly, candidates: &[Candidate], refit: &Refit, evid
                 scale: step.scale,
                 ..point
             };
-            let gain = step.gain.max(tangent.gain_with_discrepancy(&there, &step) - alone);
+            let gain = step.gain.max(tangent.gain_with_discrepancy(&there, &step) - without);
             Some((scaled.at(&here, &hypothesis, candidate), gain))
         });
         let mut starts: Vec<(Place, f64)> = tried.collect();
         starts.sort_by(|a, b| b.1.total_cmp(&a.1));
         starts.truncate(STARTS);
-        (!starts.is_empty()).then_some(Prospect {
+        (!starts.is_empty()).then_some(Screened {
             candidate: place,
             starts,
-            afresh: None,
+            unscreened: None,
         })
     });
-    let mut all: Vec<Prospect> = all.collect();
+    let mut all: Vec<Screened> = all.collect();
     all.sort_by(|a, b| b.gain().total_cmp(&a.gain()));
     all
 }
 
-/// The present fit, linearised: residuals, Jacobian and the derived quantities of the score test.
+/// A fit, linearised: residuals, Jacobian and the derived quantities of the score test.
 pub struct Tangent {
     /// Residuals in units of the noise: those of the data, then those of the priors.
     residual: DVector<f64>,
@@ -160,7 +160,7 @@ impl Tangent {
 
     /// Sum of squares of the part of a residual change that no other unknown can imitate; `None` if the normal matrix
     /// is singular.
-    pub fn trace(&self, there: &DVector<f64>) -> Option<f64> {
+    pub fn independent_change(&self, there: &DVector<f64>) -> Option<f64> {
         let mut change = there - self.residual.rows(0, self.data);
         self.discrepancy.whiten(change.as_mut_slice());
         let along = self.white_jacobian.rows(0, self.data).tr_mul(&change);
@@ -169,29 +169,29 @@ impl Tangent {
     }
 
     /// Gain of the present unknowns and the discrepancy on this evidence, without a candidate.
-    fn gain_alone(&self) -> f64 {
+    fn gain_without_candidate(&self) -> f64 {
         let Some(hessian) = &self.hessian else { return 0.0 };
-        let stay = Step {
+        let step = Step {
             scale: 0.0,
             unknowns: -hessian.solve(&self.gradient),
             gain: 0.0,
         };
         let here = self.residual.rows(0, self.data).into_owned();
-        self.gain_with_discrepancy(&here, &stay).max(0.0)
+        self.gain_with_discrepancy(&here, &step).max(0.0)
     }
 
     /// Gain of a step in log posterior density, with the discrepancy learned again from the remaining residual.
     fn gain_with_discrepancy(&self, there: &DVector<f64>, step: &Step) -> f64 {
-        let mut left = &self.residual + &self.jacobian * &step.unknowns;
+        let mut residual = &self.residual + &self.jacobian * &step.unknowns;
         let change = there - self.residual.rows(0, self.data);
-        left.rows_mut(0, self.data).axpy(step.scale, &change, 1.0);
-        if !left.iter().all(|value| value.is_finite()) {
+        residual.rows_mut(0, self.data).axpy(step.scale, &change, 1.0);
+        if !residual.iter().all(|value| value.is_finite()) {
             return f64::NEG_INFINITY;
         }
         let mut discrepancy = self.discrepancy.clone();
-        discrepancy.learn(left.as_slice());
-        discrepancy.whiten(left.as_mut_slice());
-        self.cost - discrepancy.cost() - left.norm_squared() / 2.0
+        discrepancy.estimate(residual.as_slice());
+        discrepancy.whiten(residual.as_mut_slice());
+        self.cost - discrepancy.cost() - residual.norm_squared() / 2.0
     }
 }
 
@@ -205,7 +205,7 @@ pub struct Point {
 
 impl Point {
     /// The point at which every parameter has its start value.
-    pub fn usual(candidate: &Candidate) -> Self {
+    pub fn at_start(candidate: &Candidate) -> Self {
         Self {
             shifts: vec![0.0; candidate.parameters().len()],
             scale: 1.0,
@@ -218,7 +218,7 @@ impl Point {
         let parameters = candidate.parameters().iter().zip(&self.shifts);
         let values: BTreeMap<String, f64> = parameters
             .filter(|(own, _)| !own.known)
-            .map(|(own, &shift)| (own.name.clone(), self.strengthened(own, towards(own, shift))))
+            .map(|(own, &shift)| (own.name.clone(), self.scaled_strength(own, shifted(own, shift))))
             .collect();
         match &candidate.change {
             Change::Sensor { form, parameter, .. } => {
@@ -230,7 +230,7 @@ impl Point {
         there
     }
 
-    fn strengthened(&self, own: &Added, value: f64) -> f64 {
+    fn scaled_strength(&self, own: &Added, value: f64) -> f64 {
         let ParameterRole::Strength { vanishes_at } = own.role else {
             return value;
         };
@@ -246,7 +246,7 @@ impl Point {
     fn scales(&self, candidate: &Candidate) -> (f64, f64) {
         let parameters = candidate.parameters().iter().zip(&self.shifts);
         let mut strengths = parameters.filter_map(|(own, &shift)| match own.role {
-            ParameterRole::Strength { vanishes_at } => Some((own, towards(own, shift), vanishes_at)),
+            ParameterRole::Strength { vanishes_at } => Some((own, shifted(own, shift), vanishes_at)),
             _ => None,
         });
         let Some((own, value, vanishes_at)) = strengths.next() else {
@@ -312,7 +312,7 @@ fn grid(candidate: &Candidate) -> Vec<Point> {
 }
 
 /// The value at `shift`, from the start (0) to the lower (-1) or upper (1) bound; geometric if the range is positive.
-fn towards(parameter: &Added, shift: f64) -> f64 {
+fn shifted(parameter: &Added, shift: f64) -> f64 {
     let (low, high) = parameter.range;
     let end = if shift < 0.0 { low } else { high };
     if low > 0.0 {

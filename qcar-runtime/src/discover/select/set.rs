@@ -16,20 +16,20 @@ pub struct Set {
     pub explanation: Explanation,
     /// Log prior odds of the set.
     pub log_prior: f64,
-    /// True once extensions of the set were tried.
+    /// True once extensions of the set have been tried.
     pub extended: bool,
-    /// True once its effects were replaced by their rivals.
+    /// True once its effects have been replaced by their rivals.
     pub exchanged: bool,
-    /// True once it was fitted without each of its effects.
+    /// True once it has been fitted without each of its effects.
     pub reduced: bool,
     /// Candidates that were dropped in the race that led to it.
     pub rivals: Vec<Rival>,
-    /// Log likelihood of the held-out runs, computed on first use: see [`super::judging`].
+    /// Log likelihood of the held-out runs, computed on first use: see [`super::held_out`].
     pub score: OnceLock<f64>,
 }
 
 impl Set {
-    /// A set on which no search step was tried yet.
+    /// A set from which no search step has started yet.
     pub fn new(assembly: Assembly, explanation: Explanation, log_prior: f64) -> Self {
         Self {
             assembly,
@@ -59,7 +59,7 @@ impl Set {
         let mut residual = Vec::new();
         for (place, series) in evidence.of_role(role) {
             let parts = if series.kind.complex() { 2 } else { 1 };
-            let own = &self.explanation.gap.residuals[place];
+            let own = &self.explanation.misfit.residuals[place];
             let units = series
                 .sigma
                 .iter()
@@ -71,7 +71,7 @@ impl Set {
         Some(discrepancy.carried_to(evidence, role).log_likelihoods(residual))
     }
 
-    /// Findings for all its effects, with `evidence` and `closed` left at 0.
+    /// Findings for all its effects, with `evidence` and `explained` left at 0.
     pub fn findings(&self) -> Vec<Finding> {
         let effects = self.assembly.effects().iter();
         let finding = |own: &Placed| Finding {
@@ -80,38 +80,42 @@ impl Set {
             form: own.form.clone(),
             parameters: own.unknowns.parameters(&self.explanation),
             evidence: 0.0,
-            closed: 0.0,
+            explained: 0.0,
             rivals: self.rivals.clone(),
         };
         effects.map(finding).collect()
     }
 
-    /// True if an effect that may be an answer has a magnitude at its bound.
-    pub fn stands_at_an_end(&self) -> bool {
-        self.named().any(|own| own.unknowns.stands_at_an_end(&self.explanation))
+    /// True if a named effect has a magnitude at its bound.
+    pub fn has_magnitude_at_bound(&self) -> bool {
+        self.named()
+            .any(|own| own.unknowns.has_magnitude_at_bound(&self.explanation))
     }
 
-    /// True if an effect that `part` lacks has a magnitude at its bound, so that it stands in for another effect. A
-    /// further effect must also have its shape parameters inside their ranges: little is left for it to explain, and at
-    /// the bound of a shape parameter it imitates almost anything.
-    pub fn adds_a_substitute(&self, part: &Set) -> bool {
+    /// True if an effect that `part` lacks has a magnitude at its bound: it then imitates another effect. If `part` has
+    /// effects, the shape parameters of the additional ones must be inside their ranges too. There is little residual left
+    /// for them, and at the bound of a shape parameter an effect can imitate almost any other.
+    pub fn adds_effect_at_bound(&self, part: &Set) -> bool {
         let is_further = !part.names().is_empty();
-        let is_substitute = |own: &Placed| {
-            own.unknowns.stands_at_an_end(&self.explanation)
-                || is_further && own.unknowns.reaches_an_end(&self.explanation)
+        let is_at_bound = |own: &Placed| {
+            own.unknowns.has_magnitude_at_bound(&self.explanation)
+                || is_further && own.unknowns.has_parameter_at_bound(&self.explanation)
         };
         let is_new = |own: &&Placed| !part.names().contains(&own.name());
-        self.named().filter(is_new).any(is_substitute)
+        self.named().filter(is_new).any(is_at_bound)
     }
 
-    /// True if a parameter is at its bound and the other set has fewer free parameters. At the bound a law reduces to a
-    /// simpler one, so this set is no alternative to the simpler set.
-    pub fn is_a_limit_beside(&self, other: &Set) -> bool {
+    /// True if a parameter is at its bound and the other set has fewer free parameters. A law with a parameter at its bound
+    /// reduces to a simpler one, so this set is no alternative to the simpler set.
+    pub fn is_limiting_case_of(&self, other: &Set) -> bool {
         let unknowns = |set: &Set| set.explanation.refit.free.len();
-        unknowns(self) > unknowns(other) && self.named().any(|own| own.unknowns.reaches_an_end(&self.explanation))
+        unknowns(self) > unknowns(other)
+            && self
+                .named()
+                .any(|own| own.unknowns.has_parameter_at_bound(&self.explanation))
     }
 
-    /// Its effects that are not nuisance effects.
+    /// The named effects: those that are not nuisance effects.
     pub fn named(&self) -> impl Iterator<Item = &Placed> + Clone {
         self.assembly.effects().iter().filter(|own| !own.nuisance)
     }
@@ -130,10 +134,10 @@ pub fn most_probable(sets: &[Set], places: impl IntoIterator<Item = usize>) -> O
     places.into_iter().max_by(order)
 }
 
-/// The most probable set that names nothing: the base model with the nuisance effects that the data show.
-pub fn nameless(sets: &[Set]) -> usize {
-    let nameless = (0..sets.len()).filter(|&place| sets[place].names().is_empty());
-    most_probable(sets, nameless).unwrap_or(0)
+/// The most probable set without named effects: the base model with the nuisance effects that the data show.
+pub fn best_base(sets: &[Set]) -> usize {
+    let unnamed = (0..sets.len()).filter(|&place| sets[place].names().is_empty());
+    most_probable(sets, unnamed).unwrap_or(0)
 }
 
 /// True if `whole` contains every named effect of `part`.
@@ -146,7 +150,7 @@ pub fn is_part(part: &Set, whole: &Set) -> bool {
 pub fn is_missing(set: &Set, evidence: &Evidence) -> bool {
     let discrepancy = set.explanation.refit.discrepancy.iter();
     let is_large = discrepancy
-        .flat_map(|own| own.missed())
+        .flat_map(|own| own.by_group())
         .any(|missed| missed.tau > evidence.numbers.expected_discrepancy);
     is_large && excess(&set.explanation, evidence) > 0.0
 }
@@ -157,19 +161,19 @@ pub fn leaves_more_than_noise(set: &Set, evidence: &Evidence) -> bool {
     let parts = |series: &Series| series.at.len() * if series.kind.complex() { 2 } else { 1 };
     let values: usize = evidence.of_role(Role::Fit).map(|(_, series)| parts(series)).sum();
     let scatter = (2.0 / values.max(1) as f64).sqrt();
-    let square = set.explanation.gap.fit.powi(2);
+    let square = set.explanation.misfit.fit.powi(2);
     square.is_nan() || square > 1.0 + ONE_SIDED * scatter
 }
 
 /// Share of the excess residual of `before` that `after` explains, on the held-out runs.
-pub fn closed(before: &Explanation, after: &Explanation, evidence: &Evidence) -> f64 {
+pub fn explained_share(before: &Explanation, after: &Explanation, evidence: &Evidence) -> f64 {
     1.0 - excess(after, evidence) / excess(before, evidence).max(f64::MIN_POSITIVE)
 }
 
-/// Excess residual: the mean square of the normalised residual minus 1, which noise alone leaves; at least 0. It is
-/// taken on the held-out runs, or on the fitted runs if none is held out.
+/// Excess residual: the mean square of the normalised residual above that of noise, which is 1; at least 0. It is that of
+/// the held-out runs, or of the fitted runs if none is held out.
 pub fn excess(own: &Explanation, evidence: &Evidence) -> f64 {
     let held_out = evidence.of_role(Role::HeldOut).next().is_some();
-    let gap = if held_out { own.gap.held_out } else { own.gap.fit };
-    (gap.powi(2) - 1.0).max(0.0)
+    let rms = if held_out { own.misfit.held_out } else { own.misfit.fit };
+    (rms.powi(2) - 1.0).max(0.0)
 }

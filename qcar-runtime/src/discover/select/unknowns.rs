@@ -8,7 +8,7 @@ use crate::discover::posterior::Explanation;
 #[derive(Clone)]
 pub struct Unknowns {
     all: Vec<Unknown>,
-    /// Names of its free model parameters other than shape parameters: they say how much of the effect there is.
+    /// Names of its free model parameters other than shape parameters: they determine the size of the effect.
     magnitudes: Vec<String>,
 }
 
@@ -51,16 +51,15 @@ impl Unknowns {
         }
     }
 
-    /// True if a magnitude is at its bound: the effect then stands in for another. A shape parameter may be at its
-    /// bound.
-    pub fn stands_at_an_end(&self, explanation: &Explanation) -> bool {
-        self.magnitudes.iter().any(|name| is_at_end(explanation, name))
+    /// True if a magnitude is at its bound, a sign that the effect imitates another. Shape parameters are not counted.
+    pub fn has_magnitude_at_bound(&self, explanation: &Explanation) -> bool {
+        self.magnitudes.iter().any(|name| is_at_bound(explanation, name))
     }
 
     /// True if any parameter is at its bound, shape parameters included.
-    pub fn reaches_an_end(&self, explanation: &Explanation) -> bool {
+    pub fn has_parameter_at_bound(&self, explanation: &Explanation) -> bool {
         self.all.iter().any(|unknown| match unknown {
-            Unknown::Parameter(_, name) => is_at_end(explanation, name),
+            Unknown::Parameter(_, name) => is_at_bound(explanation, name),
             Unknown::Coefficient(..) => false,
         })
     }
@@ -90,7 +89,7 @@ impl Unknowns {
     }
 }
 
-fn is_at_end(explanation: &Explanation, name: &str) -> bool {
+fn is_at_bound(explanation: &Explanation, name: &str) -> bool {
     free_of(explanation, name).is_some_and(|free| explanation.refit.at_bound[free] != 0)
 }
 

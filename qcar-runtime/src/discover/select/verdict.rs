@@ -2,21 +2,21 @@
 
 use super::answers::{Answer, answers, credible};
 use super::assembly::Placed;
-use super::set::{Set, closed, is_missing, is_part, nameless};
+use super::set::{Set, best_base, explained_share, is_missing, is_part};
 use crate::discover::answer::{Discovery, Finding, Probable, Verdict};
 use crate::discover::numbers::GREATER_PART;
 use crate::discover::observe::Evidence;
 use crate::discover::posterior::Explanation;
 
 /// The answer, and the position of the set that it describes. For a class, this is the most probable member.
-pub fn judged(sets: &[Set], evidence: &Evidence) -> (Discovery, usize) {
+pub fn conclude(sets: &[Set], evidence: &Evidence) -> (Discovery, usize) {
     let answers = answers(sets, evidence);
-    let alone = nameless(sets);
-    let before = sets[alone].explanation.clone();
+    let base = best_base(sets);
+    let before = sets[base].explanation.clone();
     let credible = credible(sets, &answers, &evidence.numbers);
-    // Names that explain less than most of the excess residual are no answer, even if they are the most probable.
-    let explains = |set: usize| closed(&before, &sets[set].explanation, evidence) >= GREATER_PART;
-    let members = if explains(credible[0]) { credible } else { vec![alone] };
+    // Effects that explain less than half of the excess residual are no answer, even if they are the most probable.
+    let explains = |set: usize| explained_share(&before, &sets[set].explanation, evidence) >= GREATER_PART;
+    let members = if explains(credible[0]) { credible } else { vec![base] };
     let best = members[0];
     let after = sets[best].explanation.clone();
     let finding = |set: &Set, own: &Placed| Finding {
@@ -25,16 +25,16 @@ pub fn judged(sets: &[Set], evidence: &Evidence) -> (Discovery, usize) {
         form: own.form.clone(),
         parameters: own.unknowns.parameters(&set.explanation),
         evidence: set.explanation.refit.log_evidence - before.refit.log_evidence,
-        closed: closed(&before, &set.explanation, evidence),
+        explained: explained_share(&before, &set.explanation, evidence),
         rivals: set.rivals.clone(),
     };
-    let (findings, alike) = findings(&members.iter().map(|&place| &sets[place]).collect::<Vec<_>>(), &finding);
+    let (findings, alternatives) = findings(&members.iter().map(|&place| &sets[place]).collect::<Vec<_>>(), &finding);
     let sum = |wanted: &dyn Fn(&Answer) -> bool| -> f64 {
         let wanted = answers.iter().filter(|own| wanted(own));
         wanted.map(|own| own.probability).sum()
     };
     let of_none = sum(&|own| sets[own.set].names().is_empty());
-    let verdict = match (findings.is_empty(), alike) {
+    let verdict = match (findings.is_empty(), alternatives) {
         (true, _) if is_missing(&sets[best], evidence) || of_none < evidence.numbers.doubt => Verdict::Unknown,
         (true, _) => Verdict::None,
         (false, 0) => Verdict::Found,
@@ -43,7 +43,7 @@ pub fn judged(sets: &[Set], evidence: &Evidence) -> (Discovery, usize) {
     let holds = |own: &Answer| members.iter().any(|&member| is_part(&sets[member], &sets[own.set]));
     let probability = match verdict {
         Verdict::None => Some(of_none),
-        // Probability given that one of the names that are not dismissed is true.
+        // Probability on the condition that one of the answers that are not dismissed is true.
         Verdict::Found | Verdict::Class => Some(sum(&|own| !own.dismissed && holds(own)) / sum(&|own| !own.dismissed)),
         Verdict::Unknown => None,
     };
@@ -55,12 +55,12 @@ pub fn judged(sets: &[Set], evidence: &Evidence) -> (Discovery, usize) {
         verdict,
         probability,
         candidates: candidates(sets, &answers, &before, evidence),
-        nuisances: [alone, best].map(|place| nuisances(&sets[place])),
+        nuisances: [base, best].map(|place| nuisances(&sets[place])),
         findings,
-        alike,
+        alternatives,
         before,
         after,
-        visible: Vec::new(),
+        detection_limits: Vec::new(),
         learned: None,
     };
     (discovery, best)
@@ -80,12 +80,12 @@ fn findings(members: &[&Set], finding: &dyn Fn(&Set, &Placed) -> Finding) -> (Ve
             }
         }
     }
-    let alike = if members.len() > 1 {
+    let alternatives = if members.len() > 1 {
         findings.len() - common.len()
     } else {
         0
     };
-    (findings, alike)
+    (findings, alternatives)
 }
 
 /// Ratio of `part` to `all`, at least 0; 0 if `all` is 0.
@@ -124,7 +124,7 @@ fn candidates(sets: &[Set], answers: &[Answer], before: &Explanation, evidence: 
             at: name.1.to_owned(),
             form,
             probability: share(answers.iter().filter(holds).map(|own| own.probability).sum(), all),
-            explained: closed(before, &best.explanation, evidence),
+            explained: explained_share(before, &best.explanation, evidence),
             log_evidence: best.explanation.refit.log_evidence - before.refit.log_evidence,
         })
     });

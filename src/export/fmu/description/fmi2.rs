@@ -59,12 +59,13 @@ fn kind(name: &str, (model, variables): (&str, &Variables), own: &[(&str, &str)]
 
 /// Kinks have no variables, only a number.
 fn scalars(variables: &Variables) -> Vec<String> {
-    let told = variables.all.iter().take(variables.first_kink()).enumerate();
-    told.map(|(reference, own)| {
-        let real = element("Real", &quantity(own, variables, 1));
-        around("ScalarVariable", &identity(reference, own), &[real])
-    })
-    .collect()
+    let exposed = variables.all.iter().take(variables.first_kink()).enumerate();
+    exposed
+        .map(|(reference, own)| {
+            let real = element("Real", &quantity(own, variables, 1));
+            around("ScalarVariable", &identity(reference, own), &[real])
+        })
+        .collect()
 }
 
 fn structure(variables: &Variables, dependencies: &Dependencies) -> Vec<String> {

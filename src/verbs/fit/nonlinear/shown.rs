@@ -11,10 +11,10 @@ use crate::left;
 use crate::table::{Table, noted, number};
 use crate::verbs::fit::{minima, render};
 
-/// Residuals of more standard deviations than this are not chance: three of a normal distribution.
+/// Residuals above this number of standard deviations are significant: three of a normal distribution.
 const MUCH: f64 = 3.0;
 
-/// As JSON.
+/// The result as JSON.
 #[derive(Serialize)]
 struct Fitted<'a> {
     campaign: &'a str,
@@ -32,21 +32,21 @@ struct Fitted<'a> {
     seconds: f64,
 }
 
-/// A value for the runs that were fitted, and one for those that no fit has seen.
+/// A value for the fitted runs and one for the held-out runs.
 #[derive(Serialize)]
 struct Of<T> {
     fit: T,
     held_out: T,
 }
 
-/// A minimum that is less probable than the answer.
+/// A minimum that is less probable than the result.
 #[derive(Serialize)]
 struct Other<'a> {
     log_odds: f64,
     parameters: Ordered<&'a f64>,
 }
 
-/// What is left of a sensor in a kind of run.
+/// Residual of a sensor in a kind of run.
 #[derive(Serialize)]
 struct Left {
     channel: String,
@@ -66,8 +66,8 @@ impl Nonlinear {
             all_correlations: self.correlations(),
             profiles: &self.profiles,
             gap: Of {
-                fit: finite(self.found.explanation.gap.fit),
-                held_out: finite(self.found.explanation.gap.held_out),
+                fit: finite(self.found.explanation.misfit.fit),
+                held_out: finite(self.found.explanation.misfit.held_out),
             },
             left: self.left(),
             stopped: refit.stop.sentence(),
@@ -79,7 +79,7 @@ impl Nonlinear {
         })
     }
 
-    /// A minimum by the parameters that are fitted.
+    /// A minimum with the fitted parameters.
     fn other<'a>(&self, of: &'a Minimum) -> Other<'a> {
         let fitted = self.parameters.iter().filter(|own| own.fitted);
         let value = |own: &ParameterFit| Some((own.name.clone(), of.named.get(&own.name)?));
@@ -89,7 +89,7 @@ impl Nonlinear {
         }
     }
 
-    /// Of every two parameters that the runs see.
+    /// Correlation of every two parameters that the runs determine.
     pub(crate) fn correlations(&self) -> Vec<Correlation> {
         let refit = &self.found.explanation.refit;
         let name = |k: usize| self.parameters[refit.free[k].parameter].name.clone();
@@ -118,7 +118,7 @@ impl Nonlinear {
     }
 
     pub(super) fn text(&self) -> String {
-        let (refit, gap) = (&self.found.explanation.refit, &self.found.explanation.gap);
+        let (refit, gap) = (&self.found.explanation.refit, &self.found.explanation.misfit);
         let ended = if refit.stop.converged() {
             "converged"
         } else {
@@ -159,7 +159,7 @@ impl Nonlinear {
         )
     }
 
-    /// How probable each minimum is beside the result, and its parameters.
+    /// Probability of each minimum relative to the result, and its parameters.
     fn minima(&self) -> String {
         let fitted = || self.parameters.iter().filter(|own| own.fitted);
         let other = |own: &Minimum| minima::Other {

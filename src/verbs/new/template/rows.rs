@@ -3,7 +3,7 @@
 use qcar_runtime::campaign::{FACTS, unit_of_fact};
 use qcar_runtime::model::{About, Default, Parameter};
 
-/// What the facts are, in the order of [`FACTS`].
+/// Descriptions of the vehicle data, in the order of [`FACTS`].
 const FACT_NAMES: [&str; 7] = [
     "Static mass carried by the tyre; if empty, half of the vehicle's mass on this axle",
     "Mass of one side of the vehicle; if empty, half of the whole",
@@ -19,23 +19,23 @@ pub(super) const GROUPS: [&str; 5] = ["Vehicle", "Masses", "Vertical", "Longitud
 
 /// A value of each axle.
 pub(super) struct Row {
-    /// An index into [`GROUPS`].
+    /// Index in [`GROUPS`].
     pub group: usize,
-    /// In the model.
+    /// Name in the model.
     pub name: String,
-    /// A coherent SI unit.
+    /// Coherent SI unit.
     pub unit: String,
-    /// What it is.
+    /// Description.
     pub doc: String,
-    /// Bounds of an estimate, SI; none of what is known.
+    /// Bounds of an estimate, SI; `None` for a known value.
     pub range: Option<(f64, f64)>,
-    /// Whether it may be estimated.
+    /// True if it may be estimated.
     pub estimated: bool,
-    /// Of the front axle, SI, where it is given.
+    /// Value of the front axle, SI; `None` if it is not given.
     pub front: Option<f64>,
 }
 
-/// The facts of the vehicle and every parameter that one of the models has, group by group.
+/// The vehicle data and every parameter of the models, group by group.
 pub(super) fn rows<'a>(models: impl Iterator<Item = &'a About>) -> Vec<Row> {
     let mut rows: Vec<Row> = FACTS
         .into_iter()

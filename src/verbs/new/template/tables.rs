@@ -1,4 +1,4 @@
-//! The sheets of curves and cleats: names, units, and below them empty columns.
+//! The sheets of curves and cleats: names and units, with empty columns below.
 
 use qcar_runtime::campaign::workbook::{AXLES, CLEATS, COLUMNS, CURVES, DAMPERS, TESTS};
 use rust_xlsxwriter::{DataValidation, DataValidationRule, Workbook, XlsxError};
@@ -6,11 +6,11 @@ use rust_xlsxwriter::{DataValidation, DataValidationRule, Workbook, XlsxError};
 use crate::spreadsheet::CellFormats;
 use crate::units;
 
-/// Heights of the thesis's cleats, mm.
+/// Heights of the cleats of the thesis, mm.
 const HEIGHTS: [u8; 4] = [10, 20, 30, 40];
-/// Columns of a damper's curve and their units.
+/// Columns of a damper curve and their units.
 const DAMPER: [(&str, &str); 2] = [("velocity", "m/s"), ("force", "N")];
-/// Rows that are prepared for numbers.
+/// Number of prepared rows.
 const PREPARED: u32 = 5000;
 
 /// Adds the sheets.

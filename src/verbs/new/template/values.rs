@@ -1,4 +1,4 @@
-//! The sheet of the values: a row for each parameter, with cells for the front and for the rear axle.
+//! The sheet of values: a row for each parameter, with cells for the front and for the rear axle.
 
 use qcar_runtime::campaign::workbook::{AXLES, VALUES};
 use rust_xlsxwriter::{DataValidation, DataValidationErrorStyle, DataValidationRule, Workbook, Worksheet, XlsxError};
@@ -8,9 +8,9 @@ use crate::catalogue;
 use crate::spreadsheet::CellFormats;
 use crate::units;
 
-/// Columns of what a row is; those of each axle follow.
+/// Columns of the description; those of each axle follow.
 const WHAT: [(&str, f64); 2] = [("Name", 58.0), ("Model variable", 20.0)];
-/// Columns of an axle: the value's own name, and what is after its dot.
+/// Columns of an axle: the value and the suffixes of further cells.
 const OF_AXLE: [(&str, &str); 5] = [
     ("", ""),
     ("Unit", ".unit"),
@@ -18,13 +18,13 @@ const OF_AXLE: [(&str, &str); 5] = [
     ("To", ".upper"),
     ("Fit", ".fit"),
 ];
-/// Columns after those of both axles: what names begin with.
+/// Prefixes of cell names in the columns after those of both axles.
 const LAST: [(&str, &str, f64); 2] = [("Comment", "comment.", 40.0), ("Kind of unit", "kind.", 14.0)];
 
 /// Rows above the table.
 const TOP: u32 = 8;
 
-/// A sheet under way, and the names of its cells.
+/// A sheet being written, and the names of its cells.
 struct Sheet<'a> {
     sheet: Worksheet,
     formats: &'a CellFormats,
@@ -66,7 +66,7 @@ pub(super) fn write(
 }
 
 impl Sheet<'_> {
-    /// What stands over the table.
+    /// Text above the table.
     fn head(&mut self, model: Option<&str>) -> Result<(), XlsxError> {
         let formats = self.formats;
         self.sheet.write_string_with_format(0, 0, "Vehicle", &formats.title)?;
@@ -132,7 +132,7 @@ impl Sheet<'_> {
         Ok(())
     }
 
-    /// A value with its unit and, of what may be estimated, its bounds.
+    /// A value with its unit, and its bounds if it may be estimated.
     fn of_axle(&mut self, at: u32, column: u16, name: &str, row: &Row, given: Option<f64>) -> Result<(), XlsxError> {
         self.measured(at, column, name, &row.unit, given)?;
         if row.group == 0 {
@@ -182,7 +182,7 @@ impl Sheet<'_> {
                 .sheet
                 .write_string_with_format(at, column, word, &self.formats.input)?,
         };
-        // Other units and models of the user's own are read as well.
+        // Units and models beyond the list are accepted too.
         let list = DataValidation::new()
             .allow_list_strings(choices)?
             .set_error_style(DataValidationErrorStyle::Information)
@@ -207,7 +207,7 @@ fn others(si: &str) -> &'static [&'static str] {
     }
 }
 
-/// Asks back where a value lies beyond what is plausible.
+/// Asks for confirmation of values outside the plausible range.
 fn validation(low: f64, high: f64, unit: &str) -> Result<DataValidation, XlsxError> {
     DataValidation::new()
         .allow_decimal_number(DataValidationRule::Between(low, high))

@@ -1,4 +1,4 @@
-//! Symmetric matrix with a variable band, and its Cholesky factor.
+//! Symmetric matrix with a band of variable width, and its Cholesky factor.
 
 use std::ops::Range;
 
@@ -30,7 +30,7 @@ impl Banded {
     }
 
     /// `1 + factor · self`.
-    pub fn scaled_beside_one(&self, factor: f64) -> Self {
+    pub fn identity_plus(&self, factor: f64) -> Self {
         let mut scaled = self.clone();
         scaled.entries.iter_mut().for_each(|entry| *entry *= factor);
         for row in 0..self.first.len() {
@@ -68,7 +68,7 @@ impl Banded {
         }
     }
 
-    /// Logarithms of the diagonal.
+    /// Logarithms of the diagonal entries.
     pub fn log_diagonal(&self) -> impl Iterator<Item = f64> {
         self.start[1..].iter().map(|end| self.entries[end - 1].ln())
     }

@@ -19,8 +19,8 @@ pub struct Group {
     cells: Vec<usize>,
     /// Number of residual rows of a value: two if it is complex.
     parts: usize,
-    /// Weight of the evidence of each run. An error of the tyre law is equal in all cleat runs and moves all masses
-    /// along an axis by one force, so all of them together count as one.
+    /// Weight of the log likelihood of each series. An error of the tyre law is the same in all cleat runs, and one force
+    /// moves all masses along an axis, so all series of cleat runs along one axis together count as one.
     weight: f64,
     /// Covariance in units of the noise for `τ` = 1.
     correlation: Banded,
@@ -51,12 +51,12 @@ impl Key {
 /// Steps of the search for `τ`.
 const STEPS: usize = 12;
 /// Smallest nonzero `τ` of the search.
-const LEAST: f64 = 1e-4;
+const SMALLEST_TAU: f64 = 1e-4;
 /// Largest `τ` of the search.
-const MOST: f64 = 2.0;
+const LARGEST_TAU: f64 = 2.0;
 
 impl Group {
-    /// A group at its smallest `τ`. `sensors` is the number of sensors that see the same force.
+    /// A group at its smallest `τ`. `sensors` is the number of sensors that respond to the same force.
     pub fn new(key: Key, sensors: usize, least: f64, mut values: Vec<Value>, numbers: &Numbers) -> Self {
         values.sort_by(|a, b| a.place.total_cmp(&b.place));
         let correlated = |row: usize| -> Range<usize> {
@@ -102,7 +102,7 @@ impl Group {
     }
 
     fn factor(&self, tau: f64) -> Banded {
-        self.correlation.scaled_beside_one(tau * tau).cholesky()
+        self.correlation.identity_plus(tau * tau).cholesky()
     }
 
     /// Half the log determinant of the covariance of all parts.
@@ -156,12 +156,12 @@ impl Group {
     }
 
     /// Sets `τ` to its most probable value: golden section over log `τ`, compared with the smallest `τ`.
-    pub fn learn(&mut self, residual: &[f64]) {
+    pub fn estimate(&mut self, residual: &[f64]) {
         let part = |part: usize| self.rows.iter().map(|rows| residual[rows[part]]).collect();
         let residual: Vec<Vec<f64>> = (0..self.parts).map(part).collect();
         let cost = |log: f64| self.cost(log.exp(), &residual);
         let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
-        let (mut low, mut high) = (LEAST.max(self.least).ln(), MOST.ln());
+        let (mut low, mut high) = (SMALLEST_TAU.max(self.least).ln(), LARGEST_TAU.ln());
         let mut inner = [high - golden * (high - low), low + golden * (high - low)];
         let mut costs = inner.map(cost);
         for _ in 0..STEPS {
@@ -190,8 +190,8 @@ impl Group {
 }
 
 /// Correlation of two discrepancies at distance `r`, by Wendland's functions: positive definite, and zero from `r` = 1
-/// on. A record may jump with all its harmonics where a law does, so φ₃,₀ is only continuous. Everything else is
-/// smooth: φ₃,₁ is twice continuously differentiable.
+/// on. A discontinuous law makes the samples of a record jump, so they get φ₃,₀, which is only continuous. All other
+/// kinds are smooth and get φ₃,₁, which is twice continuously differentiable.
 fn correlation(kind: Kind, r: f64) -> f64 {
     match kind {
         _ if r >= 1.0 => 0.0,

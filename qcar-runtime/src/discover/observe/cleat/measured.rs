@@ -3,7 +3,7 @@
 use nalgebra::Complex;
 
 use crate::campaign::Campaign;
-use crate::discover::observe::run::{FINE_POINTS, PATIENT};
+use crate::discover::observe::run::{FINE_POINTS, STEP_LIMIT};
 use crate::discover::observe::sensor::sensors;
 use crate::discover::observe::{Evidence, Kind, Means, Passage, Run, Series, Stimulus, signal_of};
 use crate::error::InputError;
@@ -15,8 +15,8 @@ use crate::roles::Roles;
 use crate::simulate::{Cleat, tyre};
 use crate::transmissibility::{Point, signal};
 
-/// Half width and spacing of the means, s. Half of the amplitude passes at 100 Hz, and nothing at 200 Hz. This keeps
-/// the modes of an axle and removes effects of the recorder's filter and of the tyre's contact with an edge.
+/// Half width and spacing of the means, s. The gain is one half at 100 Hz and zero at 200 Hz. This keeps the modes of an
+/// axle and removes effects of the recorder's filter and of the tyre's contact with an edge.
 const HALF: f64 = 5e-3;
 /// Duration of the evidence after the tyre circle reaches the obstacle, s: impact and after-shake.
 const DURATION: f64 = 1.0;
@@ -24,9 +24,9 @@ const DURATION: f64 = 1.0;
 pub const TIMING: f64 = 5e-3;
 /// Largest time by which one sensor may lead the others, s.
 const AHEAD: f64 = 0.01;
-/// Relative error, as a share of the envelope, of any tyre model on an edge and between the two sensors of a pair.
+/// Error of any tyre model on an edge, and difference between the two sensors of a pair, as a share of the envelope.
 const SHARE: f64 = 0.025;
-/// Relative error as a share of the whole record, so that a record without noise has an uncertainty too.
+/// Error as a share of the RMS of the record, so that a record without noise has an uncertainty too.
 const FLOOR: f64 = 0.002;
 /// Number of values to each side for the envelope, an RMS over one period of wheel hop.
 const AROUND: usize = 10;
@@ -57,13 +57,14 @@ impl Evidence {
             }
         };
         let (place, before) = (self.runs.len(), self.series.len());
-        for sensor in self.known(about, &run.name, sensors(about, &cleat.measured)) {
+        for sensor in self.keep_known(about, &run.name, sensors(about, &cleat.measured)) {
             let series = window.series(place, sensor.clone(), &signal(&cleat.measured, &sensor)?);
             match series.filter(|_| is_output(about, &sensor)) {
                 Some(series) => self.series.push(series),
-                None => self
-                    .notices
-                    .push(format!("{}: {sensor} says nothing; it is left out", run.name)),
+                None => self.notices.push(format!(
+                    "{}: {sensor} has a constant signal, or one that the simulation does not give; it is left out",
+                    run.name
+                )),
             }
         }
         if self.series.len() > before {
@@ -77,7 +78,7 @@ impl Evidence {
                     load,
                     duration: window.end(),
                     means: window.means.sparse(),
-                    most_steps: PATIENT,
+                    most_steps: STEP_LIMIT,
                     points_a_sample: FINE_POINTS,
                     road: cleat.road,
                 }),
@@ -116,7 +117,7 @@ impl Window {
         let start = (obstacle(&cleat.road) - radius) / cleat.speed;
         if (start - first) * rate < QUIET as f64 {
             return Err(format!(
-                "the obstacle comes at {start:.3} s, too soon to tell the noise before it"
+                "the obstacle comes at {start:.3} s, too soon to estimate the noise before it"
             ));
         }
         let last = first + (cleat.measured.len() - 1) as f64 / rate;

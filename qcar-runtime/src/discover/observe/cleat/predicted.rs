@@ -14,10 +14,10 @@ use crate::response::parameters::Values;
 use crate::response::signal::output_of;
 use crate::simulate::{Car, Drive, Method, Settings, SimulateError, Variant, ride, variation};
 
-/// Integration method; its error is far below the accuracy of a tyre model.
+/// Integration method; its error is far below that of a tyre model.
 const METHOD: Method = Method::Adaptive(3e-6);
-/// Parameter change for a finite difference, relative to its value. It is large against the integration error and small
-/// against the curvature.
+/// Parameter change for a finite difference, relative to its value: large enough against the integration error, and
+/// small enough for the curvature.
 const DIFFERENCE: f64 = 3e-3;
 /// Share of the range that replaces the value of a parameter near zero.
 const PART_OF_RANGE: f64 = 1e-2;
@@ -27,7 +27,7 @@ const STEPS: usize = 4;
 pub fn passage(
     model: &dyn Model,
     values: &Values,
-    late: &[f64],
+    delays: &[f64],
     free: &[Free],
     evidence: &Evidence,
     (run, passage): (usize, &Passage),
@@ -55,16 +55,16 @@ pub fn passage(
     };
     let base = accelerations(model, values, passage, &outputs).map_err(failed)?;
     let slopes = slopes(model, (values, &base), (&moved, &changes), passage, &outputs).map_err(failed)?;
-    let seen = Seen {
+    let measured = Measured {
         means: passage.means,
-        late: series
+        delays: series
             .iter()
-            .map(|(place, _)| late.get(*place).copied().unwrap_or(0.0))
+            .map(|(place, _)| delays.get(*place).copied().unwrap_or(0.0))
             .collect(),
         places: series.iter().map(|(place, _)| *place).collect(),
         series: series.into_iter().map(|(_, series)| series).collect(),
     };
-    Ok(seen.predictions(&base, &slopes))
+    Ok(measured.predictions(&base, &slopes))
 }
 
 /// Parameter change for a finite difference; negative at the upper bound.
@@ -141,20 +141,20 @@ fn slopes(
     moved.par_iter().zip(changes).map(difference).collect()
 }
 
-/// Series of a run, and how a passage is read for them.
-struct Seen<'a> {
+/// Measured series of a run.
+struct Measured<'a> {
     means: Means,
     series: Vec<&'a Series>,
     /// Positions of the series in the evidence.
     places: Vec<usize>,
     /// Delay of the sensor of each series, s.
-    late: Vec<f64>,
+    delays: Vec<f64>,
 }
 
 /// For each series its values and their derivatives by the shift.
 type Shifted = Vec<(Vec<f64>, Vec<f64>)>;
 
-impl Seen<'_> {
+impl Measured<'_> {
     fn predictions(&self, base: &[Vec<f64>], slopes: &[Vec<Vec<f64>>]) -> Vec<Prediction> {
         let shift = self.best_shift(base);
         let here = self.shifted(base, shift);
@@ -176,19 +176,19 @@ impl Seen<'_> {
                 slope: complex(&here[column].1),
                 shares: shares.clone(),
             }),
-            louder: None,
-            begun: Vec::new(),
+            by_drive: None,
+            by_initial_states: Vec::new(),
         };
         self.places.iter().enumerate().map(predict).collect()
     }
 
     /// Values and derivatives of the series for records that begin `shift` (s) later, with the delay of each sensor.
     fn shifted(&self, records: &[Vec<f64>], shift: f64) -> Shifted {
-        let read = |((series, late), record): ((&&Series, &f64), &Vec<f64>)| {
-            let means = series.at.iter().map(|t| self.means.at(record, t - shift - late));
+        let read = |((series, delay), record): ((&&Series, &f64), &Vec<f64>)| {
+            let means = series.at.iter().map(|t| self.means.at(record, t - shift - delay));
             means.map(|(mean, slope)| (mean, -slope)).unzip()
         };
-        self.series.iter().zip(&self.late).zip(records).map(read).collect()
+        self.series.iter().zip(&self.delays).zip(records).map(read).collect()
     }
 
     /// Share of each sensor's delay that the common shift absorbs, by series; empty if the shift is at its limit.

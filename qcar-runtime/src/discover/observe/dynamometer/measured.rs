@@ -1,4 +1,4 @@
-//! Reads a dynamometer table: the force of a link at each speed with which it passes the middle of its travel.
+//! Reads a dynamometer table: the force of a link in the middle of its travel, for each speed there.
 //!
 //! The load cell is a separate sensor, so its gain is a nuisance parameter beside those of the sensors in the car.
 

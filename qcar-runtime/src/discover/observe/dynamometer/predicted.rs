@@ -1,4 +1,4 @@
-//! Predicts the force of a link on a dynamometer: its force in the middle of travel sines, for extension and
+//! Predicts the force of a link on a dynamometer: the force in the middle of a travel sine, in extension and
 //! compression.
 //!
 //! A law without inner states is evaluated at its speed. A law with inner states is moved through whole cycles until
@@ -14,7 +14,7 @@ use crate::model::{About, InputKind, Matrix, Model, Quantity};
 use crate::response::parameters::Values;
 use crate::solver::{DormandPrince, Settings, System};
 
-/// Most cycles; after these, a force that still changes is used as it is.
+/// Most cycles. A force that still changes after them is used unchanged.
 const CYCLES: usize = 20;
 /// Relative change of the force from cycle to cycle that counts as a repetition.
 const REPEATS: f64 = 1e-6;
@@ -55,8 +55,8 @@ pub fn forces(
             value: read.iter().map(|own| Complex::from(own.force)).collect(),
             slopes: (0..free.len()).map(slope).collect(),
             delay: None,
-            louder: None,
-            begun: Vec::new(),
+            by_drive: None,
+            by_initial_states: Vec::new(),
         }
     };
     let series = all.filter(|(_, series)| series.run == run);
@@ -140,9 +140,9 @@ impl<'a> Bench<'a> {
         // Start at the end of travel before the middle at which the force is read.
         let period = TAU / self.omega;
         let middle = if speed > 0.0 { 0.0 } else { PI / self.omega };
-        let mut last = self.after(&mut integrator, (middle - period / 4.0, middle), &mut x);
+        let mut last = self.integrate(&mut integrator, (middle - period / 4.0, middle), &mut x);
         for _ in 0..CYCLES {
-            let next = self.after(&mut integrator, (middle, middle + period), &mut x);
+            let next = self.integrate(&mut integrator, (middle, middle + period), &mut x);
             if next.repeats(&last, &self.sizes) {
                 return next;
             }
@@ -151,15 +151,16 @@ impl<'a> Bench<'a> {
         last
     }
 
-    /// The force after a part of the motion that ends in the middle of the travel; NaN if the integration fails.
-    fn after(&mut self, by: &mut DormandPrince, (start, end): (f64, f64), x: &mut [f64]) -> Reading {
+    /// Integrates a part of the motion that ends in the middle of the travel, and reads the force there; NaN if the
+    /// integration fails.
+    fn integrate(&mut self, by: &mut DormandPrince, (start, end): (f64, f64), x: &mut [f64]) -> Reading {
         let quarter = PI / 2.0 / self.omega;
         // Friction laws have a kink where the motion reverses.
-        let turns: Vec<f64> = (-1..8)
+        let reversals: Vec<f64> = (-1..8)
             .map(|k| f64::from(2 * k + 1) * quarter)
             .filter(|at| (start..end).contains(at))
             .collect();
-        let report = by.integrate(self, (start, end), &turns, x);
+        let report = by.integrate(self, (start, end), &reversals, x);
         let speed = self.omega * self.amplitude * (self.omega * end).cos();
         let mut reading = self.reading(speed, x);
         if !report.reason.is_success() {
@@ -169,7 +170,7 @@ impl<'a> Bench<'a> {
     }
 
     /// Sets the inputs of the link at an angle of the sine.
-    fn hold(&mut self, angle: f64) {
+    fn set_angle(&mut self, angle: f64) {
         let (sin, cos) = angle.sin_cos();
         let speed = self.omega * self.amplitude * cos;
         self.set(
@@ -228,7 +229,7 @@ impl<'a> Bench<'a> {
 
 impl System for Bench<'_> {
     fn derivative(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
-        self.hold(self.omega * t);
+        self.set_angle(self.omega * t);
         let states = self.model.about().states.len();
         let (own, rates) = (&x[..states], &mut dx[..states]);
         self.model.derivative(&self.constants, own, &self.u, rates);

@@ -1,6 +1,6 @@
 //! A model on a K&C rig: the body is held, the wheel follows a path, and all masses between them move along.
 //!
-//! The rig is slow, so the inertia of these masses is neglected: each rests where the forces on it balance. Laws with
+//! The rig is slow, so the inertia of these masses is neglected: the forces on each of them balance. Laws with
 //! memory (dry friction, relaxing branches, dampers in series with springs) are integrated by the implicit Euler
 //! method, which is stable for any stiffness.
 
@@ -16,9 +16,9 @@ use crate::roles::{OnRig, state};
 /// Most Newton steps at an instant.
 const STEPS: usize = 30;
 /// Step size that counts as converged, relative to a state.
-const RESTS: f64 = 1e-9;
-/// Magnitude that is added to a state for this comparison, in its unit.
-const SMALL: f64 = 1e-3;
+const CONVERGED: f64 = 1e-9;
+/// Absolute part of this tolerance over its relative part, in the unit of the state.
+const ABSOLUTE: f64 = 1e-3;
 /// Relative difference of two time steps that counts as rounding error.
 const EQUAL: f64 = 1e-9;
 
@@ -47,16 +47,17 @@ pub struct Bench {
     wheel_speed: usize,
     /// Position of the body's velocity among the states.
     held_speed: usize,
-    /// Inputs of the ground under the wheel. It moves with the wheel because the rig does not measure the tyre force.
+    /// Inputs of the ground under the wheel. It moves with the wheel, so the tyre has no force, which the rig does not
+    /// measure.
     ground: Vec<(usize, Quantity)>,
-    between: Vec<Between>,
+    free: Vec<FreeState>,
     slopes: Vec<Slope>,
     /// Entries in the row of the wheel.
     of_wheel: Vec<Slope>,
 }
 
 /// A state that the rig does not prescribe.
-struct Between {
+struct FreeState {
     place: usize,
     /// Position of its velocity if it belongs to a mass; `None` for an inner state.
     speed: Option<usize>,
@@ -85,12 +86,12 @@ impl Bench {
         let wheel = called(StateKind::Position, &on.wheel)?;
         let wheel_speed = called(StateKind::Velocity, &on.wheel)?;
         let positions = along(StateKind::Position).filter(|(place, _)| ![wheel, held].contains(place));
-        let of_mass = |(place, state): (usize, &crate::model::State)| Between {
+        let of_mass = |(place, state): (usize, &crate::model::State)| FreeState {
             place,
             speed: called(StateKind::Velocity, &state.location),
         };
-        let inner = along(StateKind::Inner).map(|(place, _)| Between { place, speed: None });
-        let between: Vec<Between> = positions.map(of_mass).chain(inner).collect();
+        let inner = along(StateKind::Inner).map(|(place, _)| FreeState { place, speed: None });
+        let free: Vec<FreeState> = positions.map(of_mass).chain(inner).collect();
         let of_axis = |excitation: u16| about.excitations[usize::from(excitation)].axis == axis.name();
         let ground = about
             .inputs
@@ -107,9 +108,9 @@ impl Bench {
             on: on.clone(),
             axis,
             ground: ground.collect(),
-            slopes: slopes(about, &between, |row| between.iter().position(|b| b.row() == row)),
-            of_wheel: slopes(about, &between, |row| (row == wheel_speed).then_some(0)),
-            between,
+            slopes: slopes(about, &free, |row| free.iter().position(|b| b.row() == row)),
+            of_wheel: slopes(about, &free, |row| (row == wheel_speed).then_some(0)),
+            free,
         })
     }
 
@@ -118,13 +119,15 @@ impl Bench {
     /// if a force on the wheel accelerates nothing.
     pub fn forces(&self, model: &dyn Model, p: &[f64], near: &[Vec<f64>], path: &[Instant]) -> Option<Vec<Vec<f64>>> {
         let mut first = Drive::new(self, model, p)?;
-        // Parameters that the rig does not feel leave the forces unchanged.
-        let felt = (1..).zip(near).filter(|(_, other)| self.feels(model.about(), p, other));
-        let near_drives = felt.map(|(set, p)| Some((set, Drive::new(self, model, p)?)));
+        // Sets that differ in parameters without influence on the rig have the forces of the first.
+        let affected = (1..)
+            .zip(near)
+            .filter(|(_, other)| self.affects_force(model.about(), p, other));
+        let near_drives = affected.map(|(set, p)| Some((set, Drive::new(self, model, p)?)));
         let mut near_drives = near_drives.collect::<Option<Vec<(usize, Drive)>>>()?;
         let mut forces = vec![Vec::with_capacity(path.len()); 1 + near.len()];
         for instant in path {
-            first.hold(instant);
+            first.set_motion(instant);
             let factor = first.follow(instant.step);
             let read = forces[0].len();
             if instant.is_read {
@@ -132,7 +135,7 @@ impl Bench {
                 forces.iter_mut().for_each(|forces| forces.push(force));
             }
             for (set, drive) in &mut near_drives {
-                drive.hold(instant);
+                drive.set_motion(instant);
                 drive.follow_near(&first.x, factor.as_deref(), instant.step);
                 if instant.is_read {
                     forces[*set][read] = drive.force();
@@ -143,9 +146,9 @@ impl Bench {
     }
 
     /// True if a difference between two parameter sets acts on the forces that the rig measures.
-    fn feels(&self, about: &About, p: &[f64], other: &[f64]) -> bool {
+    fn affects_force(&self, about: &About, p: &[f64], other: &[f64]) -> bool {
         let held = [self.wheel_speed, self.held_speed];
-        let is_seen = |row: usize| held.contains(&row) || self.between.iter().any(|b| b.row() == row);
+        let is_seen = |row: usize| held.contains(&row) || self.free.iter().any(|b| b.row() == row);
         let mut jacobian = about.parameter_jacobian.iter();
         jacobian.any(|&(is_output, row, parameter)| {
             let parameter = usize::from(parameter);
@@ -155,10 +158,10 @@ impl Bench {
 }
 
 /// Entries that couple the free states to some rows of the model.
-fn slopes(about: &About, between: &[Between], row: impl Fn(usize) -> Option<usize>) -> Vec<Slope> {
+fn slopes(about: &About, free: &[FreeState], row: impl Fn(usize) -> Option<usize>) -> Vec<Slope> {
     let column = |state: usize| {
-        let of_speed = between.iter().position(|b| b.speed == Some(state));
-        let of_place = between.iter().position(|b| b.place == state);
+        let of_speed = free.iter().position(|b| b.speed == Some(state));
+        let of_place = free.iter().position(|b| b.place == state);
         of_speed.map(|column| (column, true)).or(of_place.map(|c| (c, false)))
     };
     let slope = |(entry, of): (usize, &crate::model::Entry)| {
@@ -173,14 +176,14 @@ fn slopes(about: &About, between: &[Between], row: impl Fn(usize) -> Option<usiz
     about.matrices.iter().enumerate().filter_map(slope).collect()
 }
 
-impl Between {
+impl FreeState {
     /// Row of the equation of motion that determines this state.
     fn row(&self) -> usize {
         self.speed.unwrap_or(self.place)
     }
 }
 
-/// A model with one parameter set, moved along the path.
+/// A model with one parameter set, which follows the path.
 struct Drive<'a> {
     bench: &'a Bench,
     model: &'a dyn Model,
@@ -216,7 +219,7 @@ impl<'a> Drive<'a> {
     }
 
     /// Sets the wheel and the ground to an instant.
-    fn hold(&mut self, at: &Instant) {
+    fn set_motion(&mut self, at: &Instant) {
         let bench = self.bench;
         (self.x[bench.wheel], self.x[bench.wheel_speed]) = (at.travel, at.speed);
         for &(place, quantity) in &bench.ground {
@@ -230,12 +233,12 @@ impl<'a> Drive<'a> {
 
     /// Updates the derivatives and returns the force of the rig.
     fn force(&mut self) -> f64 {
-        self.move_on();
-        self.push()
+        self.update_derivatives();
+        self.rig_force()
     }
 
-    /// Force that holds the wheel, from the acceleration it would have without the rig.
-    fn push(&self) -> f64 {
+    /// Force of the rig on the wheel, from the acceleration that the wheel would have without it.
+    fn rig_force(&self) -> f64 {
         -self.dx[self.bench.wheel_speed] / self.wheel_of_unit()
     }
 
@@ -245,23 +248,23 @@ impl<'a> Drive<'a> {
         self.of_unit[self.bench.wheel_speed] - self.of_unit[self.bench.held_speed]
     }
 
-    fn move_on(&mut self) {
+    fn update_derivatives(&mut self) {
         self.model.derivative(&self.constants, &self.x, &self.u, &mut self.dx);
     }
 
     /// Moves the free states over `h` s by Newton's method; returns the last factorisation. A linear model has a
     /// constant Jacobian, so its first step is exact.
     fn follow(&mut self, h: f64) -> Option<Rc<Factor>> {
-        let last = self.between();
+        let last = self.free_values();
         let is_linear = self.model.about().linear;
         let mut factor = self.last_factor.take();
         factor = factor.filter(|(step, _)| is_linear && (step / h - 1.0).abs() < EQUAL);
         for _ in 0..STEPS {
-            let missing = self.missing(&last, h);
+            let residual = self.residual(&last, h);
             if factor.is_none() || !is_linear {
                 factor = Factor::of(self.slope(h)).map(|own| (h, Rc::new(own)));
             }
-            let step = factor.as_ref().and_then(|(_, factor)| factor.solve(missing));
+            let step = factor.as_ref().and_then(|(_, factor)| factor.solve(residual));
             let Some(step) = step else { break };
             if self.step(&step, &last, h) || is_linear {
                 break;
@@ -271,36 +274,36 @@ impl<'a> Drive<'a> {
         factor.map(|(_, factor)| factor)
     }
 
-    /// Moves the free states in one Newton step from the states `arrived` at by a nearby parameter set.
-    fn follow_near(&mut self, arrived: &[f64], factor: Option<&Factor>, h: f64) {
-        let last = self.between();
-        for b in &self.bench.between {
-            self.x[b.place] = arrived[b.place];
+    /// Moves the free states in one Newton step, starting from the states `near` of a nearby parameter set.
+    fn follow_near(&mut self, near: &[f64], factor: Option<&Factor>, h: f64) {
+        let last = self.free_values();
+        for b in &self.bench.free {
+            self.x[b.place] = near[b.place];
         }
-        let missing = self.missing(&last, h);
-        if let Some(step) = factor.and_then(|factor| factor.solve(missing)) {
+        let residual = self.residual(&last, h);
+        if let Some(step) = factor.and_then(|factor| factor.solve(residual)) {
             self.step(&step, &last, h);
         }
     }
 
     /// Values of the free states.
-    fn between(&self) -> Vec<f64> {
-        self.bench.between.iter().map(|b| self.x[b.place]).collect()
+    fn free_values(&self) -> Vec<f64> {
+        self.bench.free.iter().map(|b| self.x[b.place]).collect()
     }
 
     /// Applies a Newton step to the free states; true if it has converged.
     fn step(&mut self, step: &DVector<f64>, last: &[f64], h: f64) -> bool {
-        let mut rests = true;
-        for (b, step) in self.bench.between.iter().zip(step) {
+        let mut converged = true;
+        for (b, step) in self.bench.free.iter().zip(step) {
             self.x[b.place] += step;
-            rests &= step.abs() <= RESTS * (self.x[b.place].abs() + SMALL);
+            converged &= step.abs() <= CONVERGED * (self.x[b.place].abs() + ABSOLUTE);
         }
         self.set_speeds(last, h);
-        rests
+        converged
     }
 
     fn set_speeds(&mut self, last: &[f64], h: f64) {
-        for (b, last) in self.bench.between.iter().zip(last) {
+        for (b, last) in self.bench.free.iter().zip(last) {
             if let Some(speed) = b.speed {
                 self.x[speed] = (self.x[b.place] - last) / h;
             }
@@ -308,32 +311,32 @@ impl<'a> Drive<'a> {
     }
 
     /// Residual of the implicit step for each free state; for a mass, the unbalanced force.
-    fn missing(&mut self, last: &[f64], h: f64) -> DVector<f64> {
+    fn residual(&mut self, last: &[f64], h: f64) -> DVector<f64> {
         self.set_speeds(last, h);
-        let push = self.force();
-        let missing = |(b, last): (&Between, &f64)| match b.speed {
-            Some(speed) => -self.dx[speed] - push * self.of_unit[speed],
+        let rig_force = self.force();
+        let residual = |(b, last): (&FreeState, &f64)| match b.speed {
+            Some(speed) => -self.dx[speed] - rig_force * self.of_unit[speed],
             None => h * self.dx[b.place] + last - self.x[b.place],
         };
-        DVector::from_iterator(last.len(), self.bench.between.iter().zip(last).map(missing))
+        DVector::from_iterator(last.len(), self.bench.free.iter().zip(last).map(residual))
     }
 
     /// Negative Jacobian of this residual by the free states.
     fn slope(&mut self, h: f64) -> DMatrix<f64> {
         self.model.matrices(self.p, &self.x, &self.u, &mut self.nonzeros);
-        let between = &self.bench.between;
-        let mut slope = DMatrix::zeros(between.len(), between.len());
+        let free = &self.bench.free;
+        let mut slope = DMatrix::zeros(free.len(), free.len());
         let along = |of: &Slope| self.nonzeros[of.entry] * if of.of_speed { 1.0 / h } else { 1.0 };
         for of in &self.bench.slopes {
             slope[(of.row, of.column)] += along(of);
         }
-        for (row, b) in between.iter().enumerate() {
+        for (row, b) in free.iter().enumerate() {
             let share = b.speed.map_or(0.0, |speed| self.of_unit[speed] / self.wheel_of_unit());
             for of in &self.bench.of_wheel {
                 slope[(row, of.column)] -= share * along(of);
             }
         }
-        for (row, _) in between.iter().enumerate().filter(|(_, b)| b.speed.is_none()) {
+        for (row, _) in free.iter().enumerate().filter(|(_, b)| b.speed.is_none()) {
             slope.row_mut(row).scale_mut(-h);
             slope[(row, row)] += 1.0;
         }
@@ -344,7 +347,7 @@ impl<'a> Drive<'a> {
 /// Factorised Jacobian.
 enum Factor {
     Regular(LU<f64, Dyn, Dyn>),
-    /// Solved by the pseudo-inverse, which gives the smallest step, so a state that nothing holds stays in place.
+    /// Solved by the pseudo-inverse. It gives the smallest step, so a state that no force holds keeps its value.
     Singular(SVD<f64, Dyn, Dyn>),
 }
 
@@ -363,10 +366,10 @@ impl Factor {
     }
 
     /// Newton step; `None` if it is not finite.
-    fn solve(&self, mut missing: DVector<f64>) -> Option<DVector<f64>> {
+    fn solve(&self, mut residual: DVector<f64>) -> Option<DVector<f64>> {
         let step = match self {
-            Factor::Regular(factor) => factor.solve_mut(&mut missing).then_some(missing),
-            Factor::Singular(factor) => factor.solve(&missing, f64::EPSILON).ok(),
+            Factor::Regular(factor) => factor.solve_mut(&mut residual).then_some(residual),
+            Factor::Singular(factor) => factor.solve(&residual, f64::EPSILON).ok(),
         };
         step.filter(|step| step.iter().all(|step| step.is_finite()))
     }

@@ -13,7 +13,7 @@ use crate::response::parameters::Values;
 const DIFFERENCE: f64 = 1e-5;
 /// Share of the range that replaces the value of a parameter near zero.
 const PART_OF_RANGE: f64 = 1e-3;
-/// Speed of a slow cycle, m/s: no damper force reaches one newton.
+/// Speed of a slow cycle, m/s: low enough for damper forces below one newton.
 const SLOW: f64 = 1e-4;
 /// Time step if the wheel does not move, s.
 const SHORTEST: f64 = 1e-3;
@@ -23,9 +23,9 @@ const APPROACH: usize = 6;
 const PARTS: usize = 48;
 /// Number of parts after a reversal that are divided further, because friction reverses within a fraction of a
 /// millimetre.
-const TURNING: usize = 3;
+const AFTER_REVERSAL: usize = 3;
 /// Number of pieces of such a part.
-const FINER: usize = 8;
+const PIECES: usize = 8;
 
 pub fn travel(
     model: &dyn Model,
@@ -42,11 +42,11 @@ pub fn travel(
         Stimulus::Sine { on, axis, frequency } => (on, *axis, Course::sine(of_run.level, *frequency)),
         _ => return Ok(Vec::new()),
     };
-    let unmoved = || PredictError::no_input(model.about(), of_run, &on.wheel);
-    let bench = Bench::new(model.about(), on, axis).ok_or_else(unmoved)?;
+    let not_on_rig = || PredictError::no_input(model.about(), of_run, &on.wheel);
+    let bench = Bench::new(model.about(), on, axis).ok_or_else(not_on_rig)?;
     let (moved, steps): (Vec<_>, Vec<_>) = free.iter().map(|free| moved(values, free)).unzip();
     let forces = bench.forces(model, values.as_slice(), &moved, &course.path);
-    let forces = forces.ok_or_else(unmoved)?;
+    let forces = forces.ok_or_else(not_on_rig)?;
     let predict = |&(place, series): &(usize, &Series)| {
         let read = |forces: &[f64]| course.read(series.kind, forces);
         let value = read(&forces[0]);
@@ -59,8 +59,8 @@ pub fn travel(
             slopes: forces[1..].iter().zip(&steps).map(slope).collect(),
             value,
             delay: None,
-            louder: None,
-            begun: Vec::new(),
+            by_drive: None,
+            by_initial_states: Vec::new(),
         }
     };
     Ok(series.iter().map(predict).collect())
@@ -83,16 +83,16 @@ struct Course {
 
 enum Reading {
     /// Forces at `count` travels, for increasing and then for decreasing travel.
-    Ways { count: usize },
+    BothDirections { count: usize },
     /// Forces at pieces of a sine with this amplitude (m).
-    Turns { turns: Vec<Turn>, amplitude: f64 },
+    Pieces { pieces: Vec<Piece>, amplitude: f64 },
 }
 
 impl Course {
     /// A slow cycle between two ends of travel (m), read at `travels` (m) in both directions.
     fn cycle([low, high]: [f64; 2], travels: &[f64]) -> Self {
         let [first, last] = [travels[0], travels[travels.len() - 1]];
-        let unread = |from: f64, to: f64| way(from, to).map(|travel| (travel, false));
+        let unread = |from: f64, to: f64| positions(from, to).map(|travel| (travel, false));
         let there = unread(0.0, low)
             .chain(unread(low, first).take(APPROACH - 1))
             .chain(travels.iter().map(|&travel| (travel, true)));
@@ -101,40 +101,40 @@ impl Course {
             .chain(travels.iter().rev().map(|&travel| (travel, true)));
         let mut before = 0.0;
         let instant = |(travel, is_read): (f64, bool)| {
-            let way: f64 = travel - std::mem::replace(&mut before, travel);
+            let step: f64 = travel - std::mem::replace(&mut before, travel);
             Instant {
                 travel,
-                speed: SLOW * way.signum(),
-                step: (way.abs() / SLOW).max(SHORTEST),
+                speed: SLOW * step.signum(),
+                step: (step.abs() / SLOW).max(SHORTEST),
                 is_read,
             }
         };
         Self {
             path: there.chain(back).map(instant).collect(),
-            reading: Reading::Ways { count: travels.len() },
+            reading: Reading::BothDirections { count: travels.len() },
         }
     }
 
     /// A sine that begins at its largest travel; `amplitude` in m, `frequency` in Hz.
     fn sine(amplitude: f64, frequency: f64) -> Self {
         let omega = TAU * frequency;
-        let approach = way(0.0, amplitude).map(|travel| Instant {
+        let approach = positions(0.0, amplitude).map(|travel| Instant {
             travel,
             speed: omega * amplitude,
             step: 1.0 / (frequency * PARTS as f64),
             is_read: false,
         });
-        let turns: Vec<Turn> = (0..PARTS + PARTS / 2).flat_map(Turn::of_part).collect();
-        let swing = turns.iter().map(|turn| Instant {
-            travel: amplitude * turn.angle.cos(),
-            speed: -omega * amplitude * turn.angle.sin(),
-            step: turn.width / omega,
-            is_read: turn.settled,
+        let pieces: Vec<Piece> = (0..PARTS + PARTS / 2).flat_map(Piece::of_part).collect();
+        let swing = pieces.iter().map(|piece| Instant {
+            travel: amplitude * piece.angle.cos(),
+            speed: -omega * amplitude * piece.angle.sin(),
+            step: piece.width / omega,
+            is_read: piece.settled,
         });
         Self {
             path: approach.chain(swing).collect(),
-            reading: Reading::Turns {
-                turns: turns.into_iter().filter(|turn| turn.settled).collect(),
+            reading: Reading::Pieces {
+                pieces: pieces.into_iter().filter(|piece| piece.settled).collect(),
                 amplitude,
             },
         }
@@ -144,7 +144,7 @@ impl Course {
     /// amplitude.
     fn read(&self, kind: Kind, forces: &[f64]) -> Vec<Complex<f64>> {
         match (&self.reading, kind) {
-            (Reading::Ways { count }, _) => {
+            (Reading::BothDirections { count }, _) => {
                 let sign = if kind == Kind::Width { -0.5 } else { 0.5 };
                 let (there, back) = forces.split_at(*count);
                 let pairs = there.iter().zip(back.iter().rev());
@@ -152,39 +152,39 @@ impl Course {
                     .map(|(there, back)| Complex::from(0.5 * there + sign * back))
                     .collect()
             }
-            (Reading::Turns { turns, amplitude }, Kind::Cycle(order)) => {
-                let part = |(turn, force): (&Turn, &f64)| {
-                    Complex::from_polar(turn.width / PI, -(order as f64) * turn.angle) * force / amplitude
+            (Reading::Pieces { pieces, amplitude }, Kind::Cycle(order)) => {
+                let part = |(piece, force): (&Piece, &f64)| {
+                    Complex::from_polar(piece.width / PI, -(order as f64) * piece.angle) * force / amplitude
                 };
-                vec![turns.iter().zip(forces).map(part).sum()]
+                vec![pieces.iter().zip(forces).map(part).sum()]
             }
             _ => Vec::new(),
         }
     }
 }
 
-/// Equally spaced positions on a path, up to its end.
-fn way(from: f64, to: f64) -> impl Iterator<Item = f64> {
+/// Equally spaced positions between two travels (m), the last included.
+fn positions(from: f64, to: f64) -> impl Iterator<Item = f64> {
     (1..=APPROACH).map(move |i| from + (to - from) * i as f64 / APPROACH as f64)
 }
 
 /// A piece of a sine.
-struct Turn {
+struct Piece {
     /// Angle of its middle, rad.
     angle: f64,
     /// Width, rad.
     width: f64,
-    /// True after the first half cycle.
+    /// True after the first half cycle, when friction is as in every later cycle.
     settled: bool,
 }
 
-impl Turn {
+impl Piece {
     /// The pieces of a part around its angle. The first and the middle part of a cycle are at its reversals.
-    fn of_part(part: usize) -> impl Iterator<Item = Turn> {
-        let pieces = if part % (PARTS / 2) < TURNING { FINER } else { 1 };
-        let width = TAU / (PARTS * pieces) as f64;
-        (0..pieces).map(move |piece| Turn {
-            angle: width * ((part * pieces + piece) as f64 - (pieces - 1) as f64 / 2.0),
+    fn of_part(part: usize) -> impl Iterator<Item = Piece> {
+        let count = if part % (PARTS / 2) < AFTER_REVERSAL { PIECES } else { 1 };
+        let width = TAU / (PARTS * count) as f64;
+        (0..count).map(move |piece| Piece {
+            angle: width * ((part * count + piece) as f64 - (count - 1) as f64 / 2.0),
             width,
             settled: part >= PARTS / 2,
         })

@@ -1,7 +1,7 @@
 //! Reads a K&C sine: the harmonics of the force over the amplitude of the travel.
 //!
-//! The first harmonic is the dynamic stiffness and damping at that speed. The third comes from dry friction and stops,
-//! and the second from differences between the two directions. Comparison with the slow cycle and with sines of other
+//! The first harmonic is the dynamic stiffness and damping at that speed. Dry friction and stops cause the third, and
+//! differences between the two directions the second. Comparison with the slow cycle and with sines of other
 //! speeds separates a damper, whose force grows with speed, from friction, whose force does not.
 
 use std::f64::consts::TAU;
@@ -19,7 +19,7 @@ use crate::model::About;
 const ORDERS: usize = 3;
 /// Number of harmonics that are removed before the noise is estimated.
 const FITTED: usize = 7;
-/// Largest share of the displacement's variance outside the sine that the campaign specifies.
+/// Largest share of the displacement's variance that the specified sine leaves.
 const OTHER: f64 = 0.01;
 
 impl Evidence {
@@ -56,8 +56,8 @@ impl Evidence {
     }
 }
 
-/// Amplitude of the travel (m), and a series for each harmonic of the last whole cycles. `None` if they cannot be
-/// fitted.
+/// Amplitude of the travel (m), and a series for each harmonic, from as many whole cycles as the record ends with.
+/// `None` if they cannot be fitted.
 fn harmonics(run: usize, curve: &DynamicCurve, frequency: f64) -> Option<(f64, Vec<Series>)> {
     let end = *curve.time.last()?;
     let cycles = ((end - curve.time[0]) * frequency).floor();
@@ -69,18 +69,18 @@ fn harmonics(run: usize, curve: &DynamicCurve, frequency: f64) -> Option<(f64, V
     let travel = fitted(time, &curve.displacement[first..], frequency, 1)?;
     let force = fitted(time, &curve.force[first..], frequency, FITTED)?;
     let reach = travel.harmonic[0].norm();
-    if travel.left.powi(2) > OTHER * reach * reach / 2.0 {
+    if travel.remainder.powi(2) > OTHER * reach * reach / 2.0 {
         return None;
     }
     let most = curve.force[first..].iter().fold(0.0, |most: f64, f| most.max(f.abs()));
-    let noise = 2.0 * force.left / (time.len() as f64).sqrt();
-    let turn = travel.harmonic[0].conj() / reach;
+    let noise = 2.0 * force.remainder / (time.len() as f64).sqrt();
+    let rotation = travel.harmonic[0].conj() / reach;
     let series = |order: usize| Series {
         run,
         sensor: sensor(Axis::Z),
         kind: Kind::Cycle(order),
         at: vec![frequency],
-        value: vec![force.harmonic[order - 1] * turn.powi(order as i32) / reach],
+        value: vec![force.harmonic[order - 1] * rotation.powi(order as i32) / reach],
         sigma: vec![noise.hypot(FLOOR * most) / reach],
         noise: vec![noise.hypot(LEAST_NOISE * most) / reach],
         least_discrepancy: FLOOR,
@@ -93,7 +93,7 @@ struct Periodic {
     /// Complex amplitudes of the harmonics, from the first on.
     harmonic: Vec<Complex<f64>>,
     /// RMS of the remaining signal.
-    left: f64,
+    remainder: f64,
 }
 
 /// Least-squares fit of a mean and `orders` harmonics; `None` if the normal matrix is singular.
@@ -114,6 +114,6 @@ fn fitted(time: &[f64], signal: &[f64], frequency: f64, orders: usize) -> Option
     let harmonic = (1..=orders).map(|order| Complex::new(parts[2 * order], parts[2 * order - 1]));
     Some(Periodic {
         harmonic: harmonic.collect(),
-        left: (signal - columns * &parts).norm() / (time.len() as f64).sqrt(),
+        remainder: (signal - columns * &parts).norm() / (time.len() as f64).sqrt(),
     })
 }

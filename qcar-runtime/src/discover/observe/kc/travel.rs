@@ -1,9 +1,10 @@
 //! Reads a quasi-static K&C cycle: the force over the travel, as the mean of both directions and as half their
 //! difference.
 //!
-//! Friction and damping add to one direction what they take from the other, so the mean is the force of springs, stops
-//! and bushings. Half the width of the loop is the dry friction plus the damper force at the rig speed. A campaign does
-//! not specify that speed. Sines of known speed limit the damper force; without them the width is no evidence.
+//! Friction and damping raise the force in one direction as much as they lower it in the other, so the mean is the force
+//! of springs, stops and bushings. Half the width of the loop is the dry friction plus the damper force at the rig speed.
+//! A campaign does not specify that speed. Sines of known speed limit the damper force; without them the width is not
+//! used.
 
 use nalgebra::Complex;
 
@@ -69,7 +70,7 @@ impl Evidence {
         Ok(())
     }
 
-    /// Wheel and body of the rig in a model; adds a notice and returns `None` if the model lacks them.
+    /// Wheel and body on the rig in a model; adds a notice and returns `None` if the model lacks them.
     pub fn on_rig(
         &mut self,
         campaign: &Campaign,
@@ -80,12 +81,12 @@ impl Evidence {
         let moves = |location: &str| state(about, StateKind::Velocity, location, axis.name()).is_some();
         let roles = Roles::of(about, &campaign.roles).and_then(|roles| roles.on_rig());
         let on = roles.map_err(|error| error.to_string()).and_then(|on| {
-            let still = |name: &str| format!("`{name}` of model `{}` does not move along {}", about.name, axis.name());
-            let resting = [&on.wheel, &on.body]
+            let fixed = |name: &str| format!("`{name}` of model `{}` does not move along {}", about.name, axis.name());
+            let immobile = [&on.wheel, &on.body]
                 .into_iter()
                 .find(|name| !moves(name))
-                .map(|name| still(name));
-            resting.map_or(Ok(on), Err)
+                .map(|name| fixed(name));
+            immobile.map_or(Ok(on), Err)
         });
         on.map_err(|why| self.notices.push(format!("{}: {why}; the run is left out", run.name)))
             .ok()
@@ -116,7 +117,7 @@ struct Loop {
     ends: [f64; 2],
     at: Vec<f64>,
     /// Force (N) for increasing and decreasing travel, each with its standard error.
-    ways: Vec<[(f64, f64); 2]>,
+    forces: Vec<[(f64, f64); 2]>,
     /// Largest absolute force, N.
     most: f64,
 }
@@ -133,27 +134,27 @@ impl Loop {
         let values = (displacement.len() / (2 * (FEWEST + 1))).clamp(FEWEST_VALUES, VALUES);
         let width = COVERED * (high - low) / values as f64;
         let first = low + (1.0 - COVERED) * (high - low) / 2.0;
-        let (mut at, mut ways) = (Vec::new(), Vec::new());
+        let (mut at, mut forces) = (Vec::new(), Vec::new());
         for value in 0..values {
             let middle = first + (value as f64 + 0.5) * width;
-            let both = [1.0, -1.0].map(|way| {
+            let both = [1.0, -1.0].map(|sign| {
                 let inside =
-                    |&i: &usize| (displacement[i] - middle).abs() <= width / 2.0 && direction(displacement, i) == way;
+                    |&i: &usize| (displacement[i] - middle).abs() <= width / 2.0 && direction(displacement, i) == sign;
                 let samples = (0..displacement.len()).filter(inside);
                 line(samples.map(|i| [displacement[i] - middle, force[i]]).collect())
             });
             if let [Some(there), Some(back)] = both {
                 at.push(middle);
-                ways.push([there, back]);
+                forces.push([there, back]);
             }
         }
         let most = force.iter().fold(0.0, |most: f64, f| f.abs().max(most));
         let ends = [low, high];
-        (at.len() > values / 2).then_some(Self { ends, at, ways, most })
+        (at.len() > values / 2).then_some(Self { ends, at, forces, most })
     }
 
-    /// Series of the mean or of half the width, with a `common` error in N at all travels. This error is spread over
-    /// the values, so that together they are as uncertain as a single one with this error.
+    /// Series of the mean or of half the width. All travels share the error `common` (N). It is scaled so that all values
+    /// together are as uncertain as a single one with this error.
     fn series(&self, run: usize, axis: Axis, kind: Kind, common: f64) -> Series {
         let sign = if kind == Kind::Width { -1.0 } else { 1.0 };
         let floor = (FLOOR * self.most).hypot(common * (self.at.len() as f64).sqrt());
@@ -165,9 +166,9 @@ impl Loop {
             sensor: sensor(axis),
             kind,
             at: self.at.clone(),
-            value: self.ways.iter().map(value).collect(),
-            sigma: self.ways.iter().map(|ways| noise(ways).hypot(floor)).collect(),
-            noise: self.ways.iter().map(|ways| noise(ways).hypot(least)).collect(),
+            value: self.forces.iter().map(value).collect(),
+            sigma: self.forces.iter().map(|forces| noise(forces).hypot(floor)).collect(),
+            noise: self.forces.iter().map(|forces| noise(forces).hypot(least)).collect(),
             least_discrepancy: FLOOR,
         }
     }

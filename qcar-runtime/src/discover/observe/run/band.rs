@@ -43,7 +43,7 @@ impl Band {
     }
 
     /// True if a constant passes.
-    pub fn holds_rest(&self) -> bool {
+    pub fn passes_mean(&self) -> bool {
         self.range.0 == 0.0
     }
 
@@ -91,7 +91,7 @@ mod tests {
 
     /// A tone in the band passes unchanged and without delay; tones outside the band and a drift do not pass.
     #[test]
-    fn a_band_passes_what_is_in_it_and_nothing_else() {
+    fn a_band_passes_its_own_frequencies_alone() {
         let rate = 200.0;
         let record = |signal: &dyn Fn(f64) -> f64| -> Vec<f64> { (0..4000).map(|k| signal(k as f64 / rate)).collect() };
         let tone = |f: f64| move |t: f64| (TAU * f * t + 0.3).sin();

@@ -21,18 +21,19 @@ pub struct Passage {
     pub means: Means,
     /// Most integration steps for each simulated second.
     pub most_steps: f64,
-    /// For a linear axle, points of a sample at which its derivatives are stepped: see
+    /// For a linear axle, integration steps of its derivatives in one sample interval: see
     /// [`variation`](crate::simulate::variation).
     pub points_a_sample: usize,
 }
 
-/// Points of a sample for derivatives with an error of a hundredth of the signal.
+/// Steps in a sample interval for derivatives with an error of a hundredth of the signal.
 pub const FINE_POINTS: usize = 2;
-/// Points of a sample for derivatives with an error of a twentieth, in half the time: enough for all but the last fit.
+/// Steps in a sample interval for derivatives with an error of a twentieth, in half the time: enough for all fits but
+/// the last.
 pub const COARSE_POINTS: usize = 1;
 
-/// Most steps for a second of a single passage.
-pub const PATIENT: f64 = 1e5;
-/// Most steps for a second of a passage in a search over many candidates. Realistic cars need 500 to 2000. Dry friction
-/// with a vanishing force and the same stiffness takes ten times as many.
-pub const HURRIED: f64 = 4e3;
+/// Most integration steps for a second of a single passage.
+pub const STEP_LIMIT: f64 = 1e5;
+/// Most integration steps for a second of a passage in a search over many candidates. Realistic cars need 500 to 2000.
+/// Dry friction of nearly zero force and unchanged stiffness takes ten times as many.
+pub const SEARCH_STEP_LIMIT: f64 = 4e3;

@@ -10,41 +10,41 @@ pub struct Restart {
     /// Number of the sample.
     pub sample: usize,
     /// Sensors of position and velocity with their values, SI.
-    pub seen: Vec<(Point, f64)>,
+    pub readings: Vec<(Point, f64)>,
 }
 
-/// Standard deviations of the initial states of a record, SI: from what a sensor shows, or from rest without one.
+/// Standard deviations of the initial states of a record, SI: about the sensor reading, or about rest without a sensor.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Spread {
-    /// For states that a sensor of position or velocity shows.
-    pub seen: Vec<(Point, f64)>,
-    /// For other positions, velocities and forces, from their size in the record; zero if the record does not show it.
-    pub unseen: [f64; 3],
+    /// Of states that a sensor of position or velocity measures.
+    pub measured: Vec<(Point, f64)>,
+    /// Of other positions, velocities and forces, from their size in the record; zero if it is unknown.
+    pub unmeasured: [f64; 3],
 }
 
 impl Spread {
-    /// Standard deviation of a state of the model; `None` if its size is unknown. An angle is taken on a lever of one
-    /// metre.
+    /// Standard deviation of a state of the model; `None` if its size is unknown. An angle counts as the motion at the
+    /// end of a lever of one metre.
     pub fn sigma(&self, state: &State) -> Option<f64> {
-        let seen = self
-            .seen
+        let measured = self
+            .measured
             .iter()
-            .find(|(point, _)| is_seen(state, point))
+            .find(|(point, _)| measures(state, point))
             .map(|(_, sigma)| *sigma);
-        let [position, velocity, force] = self.unseen;
-        let unseen = match &*state.unit {
+        let [position, velocity, force] = self.unmeasured;
+        let unmeasured = match &*state.unit {
             "m" | "rad" | "1" if state.kind != StateKind::Inner => position,
             "m" => position,
             "m/s" | "rad/s" | "1/s" => velocity,
             "N" => force,
             _ => 0.0,
         };
-        seen.or(Some(unseen)).filter(|sigma| *sigma > 0.0)
+        measured.or(Some(unmeasured)).filter(|sigma| *sigma > 0.0)
     }
 }
 
 /// True if a sensor measures the state itself.
-pub fn is_seen(state: &State, point: &Point) -> bool {
+pub fn measures(state: &State, point: &Point) -> bool {
     let kind = match point.quantity {
         Quantity::Displacement => StateKind::Position,
         Quantity::Velocity => StateKind::Velocity,

@@ -29,7 +29,7 @@ pub fn sweep(
         .filter(|(_, series)| series.run == run)
     {
         if series.kind != Kind::Harmonic(1) {
-            predictions.push(silence(place, series.at.len(), free.len()));
+            predictions.push(zero_response(place, series.at.len(), free.len()));
             continue;
         }
         let above = signal_of(about, &series.sensor);
@@ -43,21 +43,21 @@ pub fn sweep(
             slopes: free.iter().map(slope).collect(),
             value: ratio.value,
             delay: None,
-            louder: None,
-            begun: Vec::new(),
+            by_drive: None,
+            by_initial_states: Vec::new(),
         });
     }
     Ok(predictions)
 }
 
-fn silence(series: usize, values: usize, free: usize) -> Prediction {
+fn zero_response(series: usize, values: usize, free: usize) -> Prediction {
     let zero = vec![Complex::ZERO; values];
     Prediction {
         series,
         slopes: vec![zero.clone(); free],
         value: zero,
         delay: None,
-        louder: None,
-        begun: Vec::new(),
+        by_drive: None,
+        by_initial_states: Vec::new(),
     }
 }

@@ -14,7 +14,7 @@ use crate::model::About;
 use crate::transmissibility::harmonics::{HarmonicLine, Neighbourhood, Passage, Swept};
 use crate::transmissibility::{Point, signal};
 
-/// Number of harmonics in the evidence: even ones show asymmetry, odd ones show laws that are not proportional.
+/// Number of harmonics in the evidence: the second shows asymmetric laws, the third symmetric nonlinear ones.
 pub const ORDERS: usize = 3;
 
 /// Neighbourhood of a line: wide enough for eight unknowns and narrow enough to resolve a mode.
@@ -24,10 +24,10 @@ pub const AROUND: Neighbourhood = Neighbourhood {
 };
 
 /// Smallest relative distance of frequencies; closer lines repeat the same information.
-const GROWTH: f64 = 0.05;
+const RATIO: f64 = 0.05;
 
 /// Smallest distance of frequencies in spectral lines; closer neighbourhoods repeat the same information.
-const APART: f64 = 6.0;
+const LINES_APART: f64 = 6.0;
 
 /// Relative error of the first harmonic from the estimator (see
 /// [`Estimator::LOCAL`](crate::transmissibility::Estimator)) and from differences between the sides of a car.
@@ -56,9 +56,9 @@ impl Evidence {
         };
         let reference = match &pads[..] {
             [reference, ..] if is_one(&pads) => reference.clone(),
-            _ => return Err(not_one(about, &pads, history.file).into()),
+            _ => return Err(not_one_pad(about, &pads, history.file).into()),
         };
-        let sensors = self.known(about, &run.name, others);
+        let sensors = self.keep_known(about, &run.name, others);
         if sensors.is_empty() {
             self.notices
                 .push(format!("{}: no sensor but the pad's; the run is left out", run.name));
@@ -75,12 +75,12 @@ impl Evidence {
         for sensor in sensors {
             let samples = signal(&history, &sensor)?;
             let respond = |order: usize| {
-                let at: Vec<f64> = answered(&frequency, order, rate);
+                let at: Vec<f64> = usable(&frequency, order, rate);
                 let response: Vec<f64> = at.iter().map(|f| f * order as f64).collect();
                 (at, swept.responses(&samples, &response, AROUND))
             };
             let first = series(place, &sensor, 1, respond(1));
-            if !stands_clear(&first) {
+            if !is_above_noise(&first) {
                 let said = format!("`{}` shows nothing but noise", sensor.location);
                 self.notices
                     .push(format!("{}: {said}; that sensor is left out", run.name));
@@ -112,7 +112,7 @@ impl Evidence {
 }
 
 /// Problem of a sweep whose sensors measure none or several of the motions that drive the model.
-fn not_one(about: &About, pads: &[Point], file: PathBuf) -> Problem {
+fn not_one_pad(about: &About, pads: &[Point], file: PathBuf) -> Problem {
     let (place, name) = (Place::Line(1), |point: &Point| point.to_string());
     if pads.is_empty() {
         let motions = about.excitations.iter().filter(|e| !e.force);
@@ -132,20 +132,24 @@ fn not_one(about: &About, pads: &[Point], file: PathBuf) -> Problem {
     Problem::new(file, place, found, "one that drives the model", remedy)
 }
 
-/// True if the response is significant: noise alone puts one value in eight thousand above three standard deviations.
-fn stands_clear(series: &Series) -> bool {
-    const CLEAR: f64 = 3.0;
+/// True if at least 5 % of the values exceed three standard deviations. Noise alone exceeds them once in eight thousand
+/// values.
+fn is_above_noise(series: &Series) -> bool {
+    const SIGNIFICANT: f64 = 3.0;
     const SHARE: f64 = 0.05;
     let pairs = series.value.iter().zip(&series.sigma);
-    let clear = pairs.filter(|(value, sigma)| value.norm() > CLEAR * **sigma).count();
-    clear as f64 > SHARE * series.value.len() as f64
+    let significant = pairs
+        .filter(|(value, sigma)| value.norm() > SIGNIFICANT * **sigma)
+        .count();
+    significant as f64 > SHARE * series.value.len() as f64
 }
 
 /// Frequencies whose neighbourhoods overlap little: equally spaced at low frequencies, in equal ratios above.
 fn grid((first, last): (f64, f64), spacing: f64) -> Vec<f64> {
-    /// The ends of a sweep are faded, and beyond them no lines separate noise from response.
+    /// Distance from the ends of the band as a frequency ratio. The ends of a sweep are faded, and the noise cannot be
+    /// estimated beyond them.
     const INSIDE: f64 = 1.2;
-    let next = |f: &f64| Some(f + (GROWTH * f).max(APART * spacing));
+    let next = |f: &f64| Some(f + (RATIO * f).max(LINES_APART * spacing));
     std::iter::successors(Some(first * INSIDE), next)
         .take_while(|f| *f * INSIDE.sqrt() < last)
         .collect()
@@ -153,7 +157,7 @@ fn grid((first, last): (f64, f64), spacing: f64) -> Vec<f64> {
 
 /// The frequencies whose harmonic of this order lies well below half the sample `rate` (Hz). A higher harmonic uses
 /// every second frequency.
-fn answered(frequency: &[f64], order: usize, rate: f64) -> Vec<f64> {
+fn usable(frequency: &[f64], order: usize, rate: f64) -> Vec<f64> {
     let highest = 0.2 * rate;
     let step = if order == 1 { 1 } else { 2 };
     frequency

@@ -9,14 +9,14 @@ use crate::response::parameters::Values;
 use crate::response::periodic::{Cycle, Drive, Periodic};
 use crate::response::signal::output_of;
 
-/// Harmonics of the harmonic balance: the measured ones, and enough above them for convergence.
+/// Harmonics of the harmonic balance: the measured three, and two more for convergence.
 const HARMONICS: usize = 5;
 
-/// Predicts a sweep by harmonic balance. `louder` is the factor of the true excitation on that of the reference.
+/// Predicts a sweep by harmonic balance. `drive` is the factor of the true excitation on that of the reference sensor.
 pub fn sweep(
     model: &dyn Model,
     values: &Values,
-    louder: f64,
+    drive: f64,
     free: &[Free],
     evidence: &Evidence,
     run: usize,
@@ -35,7 +35,7 @@ pub fn sweep(
     let power = order_of(reference);
     let drives = frequency.iter().zip(amplitude).map(|(&frequency, &amplitude)| Drive {
         frequency,
-        amplitude: louder * amplitude,
+        amplitude: drive * amplitude,
         power,
     });
     let drives: Vec<Drive> = drives.collect();
@@ -98,15 +98,15 @@ impl Reading<'_> {
             let along = |&place: &usize| cycles[place].slope(k, self.output)[harmonic] * scale(place);
             places.iter().map(along).collect()
         };
-        let louder = |&place: &usize| {
+        let by_drive = |&place: &usize| {
             let moved = cycles[place].louder(self.output)[harmonic] - cycles[place].output(self.output)[harmonic];
             moved * scale(place)
         };
         Prediction {
             series: self.place,
             value: places.iter().map(value).collect(),
-            louder: (free > 0).then(|| places.iter().map(louder).collect()),
-            begun: Vec::new(),
+            by_drive: (free > 0).then(|| places.iter().map(by_drive).collect()),
+            by_initial_states: Vec::new(),
             slopes: (0..free).map(slope).collect(),
             delay: None,
         }

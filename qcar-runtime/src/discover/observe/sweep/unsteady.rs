@@ -1,10 +1,10 @@
 //! The non-steady part of a sweep: the harmonics that the estimator reads from it, minus the steady harmonics.
 //!
-//! A sweep never reaches a steady state: friction has memory, and lightly damped modes ring on. A balance of few
-//! harmonics truncates sharp laws. Near the ends of a sweep the estimator mixes harmonics slightly. These errors are
-//! small against the response and change little with the parameters. So the measured motion of the pad is replayed
-//! through the model, and the estimator of the measurement reads the responses. The difference from the steady
-//! harmonics is added to every prediction of a search.
+//! A sweep never reaches a steady state: friction depends on the motion before, and lightly damped modes keep ringing.
+//! A balance of few harmonics truncates laws with kinks. Near the ends of a sweep the estimator mixes harmonics slightly.
+//! These errors are small against the response and change little with the parameters. So they are computed once: the
+//! model is simulated with the measured motion of the pad, the estimator of the measurement reads the responses, and the
+//! difference from the steady harmonics is added to every prediction of a search.
 
 use std::borrow::Cow;
 
@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use super::measured::AROUND;
 use super::{excitation, linear, nonlinear};
 use crate::campaign::Role;
-use crate::discover::observe::{Evidence, Kind, Misread, PredictError, Series, Stimulus, order_of, signal_of};
+use crate::discover::observe::{Evidence, Kind, PredictError, Series, Stimulus, TestConditions, order_of, signal_of};
 use crate::model::{Model, Signal};
 use crate::response::parameters::Values;
 use crate::response::ratio::ratio;
@@ -26,7 +26,7 @@ use crate::transmissibility::Point;
 use crate::transmissibility::harmonics::Swept;
 
 /// Factor by which the used band extends the band of a sweep on both sides. The faded ends of the sweep lie there, and
-/// friction remembers its slow parts. The signal farther out is noise of the pad's sensor.
+/// friction responds to its slow parts. Beyond that the signal is noise of the pad's sensor.
 const BEYOND: f64 = 4.0;
 
 /// Non-steady part of each series for the runs of one role. It is empty for series of other runs and for sweeps whose
@@ -37,7 +37,7 @@ const BEYOND: f64 = 4.0;
 pub fn unsteady(
     model: &dyn Model,
     values: &Values,
-    misread: &Misread,
+    conditions: &TestConditions,
     evidence: &Evidence,
     role: Role,
 ) -> Result<Vec<Vec<Complex<f64>>>, PredictError> {
@@ -47,65 +47,65 @@ pub fn unsteady(
         .collect();
     let of_runs = runs
         .into_par_iter()
-        .map(|run| of_run(model, values, misread.louder(run), evidence, run));
+        .map(|run| of_run(model, values, conditions.drive_of(run), evidence, run));
     for (series, differences) in of_runs.collect::<Result<Vec<_>, _>>()?.into_iter().flatten() {
         added[series] = differences;
     }
     Ok(added)
 }
 
-/// Positions of series with their non-steady parts.
+/// Positions of series, each with its non-steady part.
 type Differences = Vec<(usize, Vec<Complex<f64>>)>;
 
 fn of_run(
     model: &dyn Model,
     values: &Values,
-    louder: f64,
+    drive: f64,
     evidence: &Evidence,
     run: usize,
 ) -> Result<Differences, PredictError> {
-    let Some(driven) = Driven::of(model, evidence, run, louder)? else {
+    let Some(driven) = Driven::of(model, evidence, run, drive)? else {
         return Ok(Vec::new());
     };
     let about = model.about();
     let steady = if about.linear {
         linear(model, values, &[], evidence, run)?
     } else {
-        nonlinear(model, values, louder, &[], evidence, run)?
+        nonlinear(model, values, drive, &[], evidence, run)?
     };
     let sensors = steady
         .iter()
         .map(|p| signal_of(about, &evidence.series[p.series].sensor));
     let sensors: Vec<Signal> = sensors.collect();
     // A sensor has one series for each harmonic, all read from the same signal.
-    let different = each_once(&sensors);
+    let distinct = without_duplicates(&sensors);
     let shown = if about.linear {
-        driven.answered(model, values, &different)?
+        driven.by_frequency_response(model, values, &distinct)?
     } else {
-        driven.replayed(model, values, &different)?
+        driven.by_time_integration(model, values, &distinct)?
     };
     let spectra: Vec<_> = shown.par_iter().map(|signal| transform(signal)).collect();
     let differences = steady.into_par_iter().zip(&sensors).map(|(steady, sensor)| {
-        let place = different.iter().position(|other| other == sensor).unwrap_or(0);
-        let seen = seen(driven.swept, &spectra[place], &evidence.series[steady.series]);
-        let differences = seen
+        let place = distinct.iter().position(|other| other == sensor).unwrap_or(0);
+        let unsteady = harmonics(driven.swept, &spectra[place], &evidence.series[steady.series]);
+        let differences = unsteady
             .iter()
             .zip(&steady.value)
-            .map(|(seen, steady)| seen / louder - steady);
+            .map(|(unsteady, steady)| unsteady / drive - steady);
         (steady.series, differences.collect())
     });
     Ok(differences.collect())
 }
 
 /// The signals without duplicates, in order of first use.
-fn each_once(signals: &[Signal]) -> Vec<Signal> {
-    let mut different: Vec<Signal> = Vec::new();
+fn without_duplicates(signals: &[Signal]) -> Vec<Signal> {
+    let mut distinct: Vec<Signal> = Vec::new();
     for signal in signals {
-        if !different.contains(signal) {
-            different.push(signal.clone());
+        if !distinct.contains(signal) {
+            distinct.push(signal.clone());
         }
     }
-    different
+    distinct
 }
 
 /// Sample-by-sample signals of the sensors of a sweep, starting from rest.
@@ -120,7 +120,7 @@ pub fn replayed(
     };
     let sensors = evidence.sensors(run);
     let signals: Vec<Signal> = sensors.iter().map(|sensor| signal_of(model.about(), sensor)).collect();
-    let shown = driven.replayed(model, values, &signals)?;
+    let shown = driven.by_time_integration(model, values, &signals)?;
     Ok(sensors.into_iter().cloned().zip(shown).collect())
 }
 
@@ -129,7 +129,7 @@ struct Driven<'a> {
     excitation: usize,
     reference: &'a Point,
     samples: Cow<'a, [f64]>,
-    /// Estimator of responses to the measured motion, before the factor `louder`.
+    /// Estimator of responses to the measured motion, without the factor `drive`.
     swept: &'a Swept,
     rate: f64,
     /// Lowest and highest frequency, Hz; the signal outside is noise.
@@ -137,9 +137,9 @@ struct Driven<'a> {
 }
 
 impl<'a> Driven<'a> {
-    /// The pad of a run; `louder` is the factor of the true excitation on that of the reference. `None` if the run is
+    /// The pad of a run; `drive` is the factor of the true excitation on that of the reference. `None` if the run is
     /// no sweep or its record is not available.
-    fn of(model: &dyn Model, evidence: &'a Evidence, run: usize, louder: f64) -> Result<Option<Self>, PredictError> {
+    fn of(model: &dyn Model, evidence: &'a Evidence, run: usize, drive: f64) -> Result<Option<Self>, PredictError> {
         let Stimulus::Sweep {
             reference,
             signal,
@@ -151,14 +151,14 @@ impl<'a> Driven<'a> {
         else {
             return Ok(None);
         };
-        let is_as_shown = louder == 1.0;
+        let is_unscaled = drive == 1.0;
         Ok(Some(Self {
             excitation: excitation(model, evidence, run, reference)?,
             reference,
-            samples: if is_as_shown {
+            samples: if is_unscaled {
                 Cow::Borrowed(signal)
             } else {
-                signal.iter().map(|sample| louder * sample).collect()
+                signal.iter().map(|sample| drive * sample).collect()
             },
             swept,
             rate: *rate,
@@ -167,7 +167,12 @@ impl<'a> Driven<'a> {
     }
 
     /// Sensor signals of a nonlinear model, by time integration.
-    fn replayed(&self, model: &dyn Model, values: &Values, sensors: &[Signal]) -> Result<Vec<Vec<f64>>, SignalError> {
+    fn by_time_integration(
+        &self,
+        model: &dyn Model,
+        values: &Values,
+        sensors: &[Signal],
+    ) -> Result<Vec<Vec<f64>>, SignalError> {
         let recorded = Recorded {
             excitation: self.excitation,
             power: order_of(self.reference),
@@ -189,12 +194,17 @@ impl<'a> Driven<'a> {
 
     /// Sensor signals of a linear model, by its frequency response. The record is padded with zeros, since ringing
     /// after its end would otherwise wrap around to its beginning. The mean of the record is removed first.
-    fn answered(&self, model: &dyn Model, values: &Values, sensors: &[Signal]) -> Result<Vec<Vec<f64>>, SignalError> {
+    fn by_frequency_response(
+        &self,
+        model: &dyn Model,
+        values: &Values,
+        sensors: &[Signal],
+    ) -> Result<Vec<Vec<f64>>, SignalError> {
         let length = 2 * self.samples.len();
-        let at_rest = self.samples.iter().sum::<f64>() / self.samples.len() as f64;
-        let mut continued: Vec<f64> = self.samples.iter().map(|sample| sample - at_rest).collect();
-        continued.resize(length, 0.0);
-        let (lines, spacing) = (transform(&continued), self.rate / length as f64);
+        let mean = self.samples.iter().sum::<f64>() / self.samples.len() as f64;
+        let mut padded: Vec<f64> = self.samples.iter().map(|sample| sample - mean).collect();
+        padded.resize(length, 0.0);
+        let (lines, spacing) = (transform(&padded), self.rate / length as f64);
         let first = (self.band.0 / spacing).ceil() as usize;
         let inside = first..((self.band.1 / spacing) as usize).clamp(first, lines.len());
         let at: Vec<f64> = inside.clone().map(|line| line as f64 * spacing).collect();
@@ -217,8 +227,8 @@ impl<'a> Driven<'a> {
     }
 }
 
-/// Values of a series from the spectrum of a replayed signal.
-fn seen(swept: &Swept, spectrum: &[Complex<f64>], series: &Series) -> Vec<Complex<f64>> {
+/// Harmonics of a series from the spectrum of a simulated signal.
+fn harmonics(swept: &Swept, spectrum: &[Complex<f64>], series: &Series) -> Vec<Complex<f64>> {
     let Kind::Harmonic(order) = series.kind else {
         unreachable!("a sweep has no other series")
     };

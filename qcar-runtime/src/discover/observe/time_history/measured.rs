@@ -15,9 +15,9 @@ use crate::transmissibility::{Point, signal};
 
 /// Share of a record at each end that is not compared, because the band limit of the inputs is inaccurate there.
 const ENDS: f64 = 0.02;
-/// Largest number of values of a series; neighbours in time are similar, so more values add nothing.
-const MOST: usize = 2000;
-/// Smallest relative error of any calibration and any model of a real system, as a share of the response's RMS.
+/// Largest number of values of a series. Neighbours in time are similar, so more values add little information.
+const MOST_VALUES: usize = 2000;
+/// Smallest error of any calibration and any model of a real system, as a share of the RMS of the response.
 const FLOOR: f64 = 0.005;
 
 impl Evidence {
@@ -32,7 +32,7 @@ impl Evidence {
             band_limited, periodic, ..
         } = *recording;
         let history = campaign.history(run)?;
-        let known = self.known(about, &run.name, sensors(about, &history));
+        let known = self.keep_known(about, &run.name, sensors(about, &history));
         let (inputs, responses): (Vec<_>, Vec<_>) = known
             .into_iter()
             .partition(|point| excitation_of(about, point).is_some());
@@ -55,7 +55,7 @@ impl Evidence {
         let (place, rate) = (self.runs.len(), history.sample_rate);
         let driven: Vec<&[f64]> = signals.iter().map(|(_, samples)| samples.as_slice()).collect();
         if periodic {
-            repeats(about, campaign, run, signals.is_empty())?;
+            check_periodic(about, campaign, run, signals.is_empty())?;
         }
         let band = recording.band.map(|band| Band::new(band, rate));
         let ends = if band_limited && !signals.is_empty() && !periodic {
@@ -116,7 +116,7 @@ impl Evidence {
 fn inside(samples: usize, cut: usize, stride: usize) -> Option<impl Iterator<Item = usize> + Clone> {
     const FEWEST: usize = 20;
     let left = samples.saturating_sub(2 * cut);
-    let inside = (cut..cut + left).step_by(left.div_ceil(MOST).max(stride));
+    let inside = (cut..cut + left).step_by(left.div_ceil(MOST_VALUES).max(stride));
     (inside.len() >= FEWEST).then_some(inside)
 }
 
@@ -140,7 +140,12 @@ fn too_short(history: &History, recording: &Recording, reach: usize) -> InputErr
 ///
 /// # Errors
 /// Fails if the motion cannot be periodic.
-fn repeats(about: &About, campaign: &Campaign, run: &crate::campaign::Run, is_free: bool) -> Result<(), InputError> {
+fn check_periodic(
+    about: &About,
+    campaign: &Campaign,
+    run: &crate::campaign::Run,
+    is_free: bool,
+) -> Result<(), InputError> {
     let adrift = (0..about.states.len()).find(|&state| drifts(about, state));
     let why = match adrift {
         _ if is_free => "no input of the model that drives it".to_owned(),
@@ -175,5 +180,5 @@ fn series(
     series
 }
 
-/// Values in half a mean period of a record: they resolve its first eight harmonics, and more add nothing.
+/// Values in half a mean period of a record: they resolve its first eight harmonics, and more add little information.
 const IN_HALF_A_PERIOD: f64 = 8.0;

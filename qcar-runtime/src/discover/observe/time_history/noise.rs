@@ -1,11 +1,10 @@
-//! Estimates the noise of a sensor from the part of a record that contains nothing else.
+//! Estimates the noise of a sensor from the part of a record that contains noise alone.
 //!
 //! The best source is the difference between the periods of a periodic record. The next is the signal while nothing
 //! moves. Otherwise the highest frequencies are used, where the signal is small. A drift or a step between the ends
 //! would leak into these frequencies, so a straight line is removed and a window is applied (Bendat and Piersol, Random
 //! data, 4th edition, section 11.5; for periods Pintelon and Schoukens, System identification, 2nd edition, section
 //! 2.6).
-//! edition, section 11.5; for periods Pintelon and Schoukens, System identification, 2nd edition, section 2.6).
 
 use std::f64::consts::LN_2;
 
@@ -133,7 +132,7 @@ mod tests {
     }
 
     fn is_found(found: f64) {
-        assert!((found / NOISE - 1.0).abs() < 0.1, "{found}, made with {NOISE}");
+        assert!((found / NOISE - 1.0).abs() < 0.1, "{found}, not {NOISE}");
     }
 
     #[test]
@@ -148,9 +147,9 @@ mod tests {
         }
     }
 
-    /// Mains hum is not at the highest frequencies, but remains while nothing moves.
+    /// Mains hum has no power at the highest frequencies, but remains at rest.
     #[test]
-    fn what_a_sensor_shows_at_rest_is_its_noise() {
+    fn the_reading_at_rest_is_noise() {
         let drive = |t: f64| if t < 0.3 { 0.0 } else { (9.7 * TAU * t).sin() };
         let hum = |t: f64| 2f64.sqrt() * NOISE * (333.0 * TAU * t).sin();
         let measured = record(|t| 20.0 * drive(t) + hum(t));
@@ -162,7 +161,7 @@ mod tests {
 
     /// Noise that falls with frequency is ten times smaller at the highest frequencies.
     #[test]
-    fn what_differs_between_periods_is_noise_at_all_frequencies() {
+    fn differences_between_periods_are_noise_at_all_frequencies() {
         let drive = record(|t| (24.0 * TAU * t).sin() + (56.0 * TAU * t).cos());
         assert_eq!(periods(&[&drive]), 8);
         let mut random = random(NOISE * (1.0 - 0.9f64.powi(2)).sqrt());

@@ -3,7 +3,7 @@
 use nalgebra::Complex;
 
 use crate::discover::observe::{
-    Delay, Evidence, Free, Misread, PredictError, Prediction, Series, Spread, Stimulus, excitation_of, is_seen,
+    Delay, Evidence, Free, PredictError, Prediction, Series, Spread, Stimulus, TestConditions, excitation_of, measures,
     order_of, signal_of,
 };
 use crate::model::{About, Model};
@@ -21,12 +21,12 @@ const PART_OF_RANGE: f64 = 1e-3;
 /// Change of an initial state for a finite difference, relative to its prior standard deviation.
 const OF_SPREAD: f64 = 1e-4;
 
-/// Predicts the sensors of a run with derivatives by the `free` parameters and, if `begun`, by the initial states.
+/// Predicts the sensors of a run with derivatives by the `free` parameters and, if `by_states` is true, by the initial states.
 pub fn history(
     model: &dyn Model,
     values: &Values,
-    misread: &Misread,
-    (free, begun): (&[Free], bool),
+    conditions: &TestConditions,
+    (free, by_states): (&[Free], bool),
     evidence: &Evidence,
     run: usize,
 ) -> Result<Vec<Prediction>, PredictError> {
@@ -50,8 +50,11 @@ pub fn history(
         &series.iter().map(|(_, s)| &s.sensor).collect::<Vec<_>>(),
     )?;
     let start = inputs.start;
-    let (p, begin) = (values.as_slice(), begin(model.about(), misread.begun(run)));
-    let base = &replay.run(p, &begin);
+    let (p, deviations) = (
+        values.as_slice(),
+        deviations(model.about(), conditions.initial_states_of(run)),
+    );
+    let base = &replay.run(p, &deviations);
     let difference = |free: &Free| DIFFERENCE * p[free.parameter].abs().max(PART_OF_RANGE * (free.upper - free.lower));
     let steps: Vec<f64> = free.iter().map(difference).collect();
     let moved = |(free, step): (&Free, &f64)| {
@@ -59,23 +62,27 @@ pub fn history(
         values.set(free.parameter, p[free.parameter] + step);
         values.as_slice().to_vec()
     };
-    let others = replay.like(base, &free.iter().zip(&steps).map(moved).collect::<Vec<_>>(), &begin);
-    // With the step of each for a difference.
-    let states: Vec<(usize, f64)> = if begun {
+    let others = replay.like(
+        base,
+        &free.iter().zip(&steps).map(moved).collect::<Vec<_>>(),
+        &deviations,
+    );
+    // Each state with its step for a finite difference.
+    let states: Vec<(usize, f64)> = if by_states {
         let states = unknown(model.about(), spread).into_iter();
         states.map(|(state, sigma)| (state, OF_SPREAD * sigma)).collect()
     } else {
         Vec::new()
     };
-    let by_states = replay.by_initial_states(base, p, &begin, &states);
+    let of_states = replay.by_initial_states(base, p, &deviations, &states);
     let shown = |signals: &[Vec<f64>], column: usize| stimulus.of_band(&signals[column]);
     let predict = |(column, (place, series)): (usize, &(usize, &Series))| {
-        let late = misread.late.get(*place).copied().unwrap_or(0.0);
+        let delay = conditions.delays.get(*place).copied().unwrap_or(0.0);
         let read = |signal: &[f64]| -> (Vec<f64>, Vec<f64>) {
             series
                 .at
                 .iter()
-                .map(|t| between(signal, (t - start - late) * rate))
+                .map(|t| between(signal, (t - start - delay) * rate))
                 .unzip()
         };
         let (value, by_sample) = read(&shown(&base.signals, column));
@@ -95,9 +102,9 @@ pub fn history(
         Prediction {
             series: *place,
             slopes: steps.iter().zip(&others).map(|(step, own)| slope(*step, own)).collect(),
-            begun: states
+            by_initial_states: states
                 .iter()
-                .zip(&by_states)
+                .zip(&of_states)
                 .map(|(&(state, _), own)| (name(state), along(own)))
                 .collect(),
             value: value.iter().map(|&value| Complex::from(value)).collect(),
@@ -105,7 +112,7 @@ pub fn history(
                 slope: by_sample.iter().map(|slope| Complex::from(-slope * rate)).collect(),
                 shares: Vec::new(),
             }),
-            louder: None,
+            by_drive: None,
         }
     };
     Ok(series.iter().enumerate().map(predict).collect())
@@ -115,23 +122,23 @@ pub fn history(
 pub fn replayed(
     model: &dyn Model,
     values: &Values,
-    misread: &Misread,
+    conditions: &TestConditions,
     evidence: &Evidence,
     run: usize,
 ) -> Result<Vec<(Point, Vec<f64>)>, PredictError> {
     let sensors = evidence.sensors(run);
     let replay = prepare(model, evidence, run, &sensors)?;
-    let begin = begin(model.about(), misread.begun(run));
-    let signals = replay.run(values.as_slice(), &begin).signals;
+    let deviations = deviations(model.about(), conditions.initial_states_of(run));
+    let signals = replay.run(values.as_slice(), &deviations).signals;
     let stimulus = &evidence.runs[run].stimulus;
     let shown = signals.iter().map(|signal| stimulus.of_band(signal));
     Ok(sensors.into_iter().cloned().zip(shown).collect())
 }
 
-/// A signal at a fractional sample `place`, and its derivative by the sample: a cubic through two samples on either
-/// side (Catmull and Rom). Beyond its ends the signal is constant.
+/// Value of a signal at the fractional sample `place`, and its derivative by the sample: a cubic through two samples on
+/// either side (Catmull and Rom). Beyond its ends the signal is constant.
 fn between(signal: &[f64], place: f64) -> (f64, f64) {
-    // Most places are samples, but times are not exact multiples of the sample interval.
+    // Most places are whole samples, but times are not exact multiples of the sample interval.
     const ROUNDING: f64 = 1e-6;
     let place = if (place - place.round()).abs() < ROUNDING {
         place.round()
@@ -188,15 +195,15 @@ fn prepare<'a>(
     };
     let restarts = restarts
         .iter()
-        .map(|restart| (restart.sample, states(about, &restart.seen)));
+        .map(|restart| (restart.sample, states(about, &restart.readings)));
     Ok(Replay::new(model, recorded, how, restarts.collect(), readings))
 }
 
-/// States that begin away from their measured value, with the difference.
-fn begin(about: &About, begun: &[(String, f64)]) -> Vec<(usize, f64)> {
+/// States with the deviation of their initial value from the sensor reading or from rest.
+fn deviations(about: &About, initial_states: &[(String, f64)]) -> Vec<(usize, f64)> {
     let place = |name: &str| about.states.iter().position(|state| state.name == name);
-    let begun = begun.iter().filter_map(|(name, by)| Some((place(name)?, *by)));
-    begun.collect()
+    let deviations = initial_states.iter().filter_map(|(name, by)| Some((place(name)?, *by)));
+    deviations.collect()
 }
 
 /// States with an uncertain initial value, with its standard deviation.
@@ -207,10 +214,11 @@ fn unknown(about: &About, spread: &Spread) -> Vec<(usize, f64)> {
         .collect()
 }
 
-/// States that a sensor shows, with their values.
-fn states(about: &About, seen: &[(Point, f64)]) -> Vec<(usize, f64)> {
-    let place = |point: &Point| about.states.iter().position(|state| is_seen(state, point));
-    seen.iter()
+/// States that a sensor measures, with their values.
+fn states(about: &About, readings: &[(Point, f64)]) -> Vec<(usize, f64)> {
+    let place = |point: &Point| about.states.iter().position(|state| measures(state, point));
+    readings
+        .iter()
         .filter_map(|(point, value)| Some((place(point)?, *value)))
         .collect()
 }

@@ -1,20 +1,20 @@
 //! Initial states of a model that a record drives, and its restarts within the record.
 //!
-//! The position of a mass that nothing holds depends on every force in the past: the smallest force error ends as a
+//! The position of a mass that no link holds depends on all earlier forces, so the smallest force error becomes a
 //! drift. A fit uses this drift, since nothing determines the parameters better. In a held-out run the drift would hide
-//! everything else. There such a mass is reset to its measured position at the beginning of each of [`WINDOWS`]
+//! all other errors. There such a mass is reset to its measured position at the beginning of each of [`WINDOWS`]
 //! windows, and the model runs freely within a window (multiple shooting: Bock, H. G., Plitt, K. J., IFAC world
 //! congress, 1984).
 
 use std::f64::consts::TAU;
 
 use crate::campaign::{Quantity, Role};
-use crate::discover::observe::{Restart, Spread, is_seen};
+use crate::discover::observe::{Restart, Spread, measures};
 use crate::model::{About, Matrix, StateKind};
 use crate::spectrum::{Trend, transform};
 use crate::transmissibility::Point;
 
-/// Offset of a sensor that shows an initial state, relative to the RMS of its readings.
+/// Offset of a sensor that measures an initial state, relative to the RMS of its readings.
 const OFFSET: f64 = 0.1;
 /// Factor on the size of a motion in its record, for the prior standard deviation of an initial state: it is nearly
 /// uninformative.
@@ -25,12 +25,12 @@ impl Spread {
     /// `rate` in Hz.
     pub(super) fn of(recorded: &[(Point, Vec<f64>)], noise: &[f64], inputs: &[(Point, Vec<f64>)], rate: f64) -> Self {
         let shows = |point: &Point| matches!(point.quantity, Quantity::Displacement | Quantity::Velocity);
-        let seen = recorded.iter().zip(noise).filter(|((point, _), _)| shows(point));
-        let seen = seen.map(|((point, y), noise)| {
+        let measured = recorded.iter().zip(noise).filter(|((point, _), _)| shows(point));
+        let measured = measured.map(|((point, y), noise)| {
             let power = y.iter().map(|y| y * y).sum::<f64>() / y.len() as f64;
             (point.clone(), noise.hypot(OFFSET * power.sqrt()))
         });
-        let mut unseen = [0.0_f64; 3];
+        let mut unmeasured = [0.0_f64; 3];
         for (point, y) in recorded.iter().chain(inputs) {
             let (far, omega) = (excursion(y), TAU * middle(y, rate));
             let of_signal = match point.quantity {
@@ -39,13 +39,13 @@ impl Spread {
                 Quantity::Acceleration => [far / (omega * omega), far / omega, 0.0],
                 Quantity::Force => [0.0, 0.0, far],
             };
-            for (unseen, own) in unseen.iter_mut().zip(of_signal) {
-                *unseen = unseen.max(WIDE * own);
+            for (unmeasured, own) in unmeasured.iter_mut().zip(of_signal) {
+                *unmeasured = unmeasured.max(WIDE * own);
             }
         }
         Self {
-            seen: seen.collect(),
-            unseen,
+            measured: measured.collect(),
+            unmeasured,
         }
     }
 }
@@ -78,10 +78,10 @@ const WINDOWS: usize = 20;
 pub fn restarts(about: &About, role: Role, responses: &[(Point, Vec<f64>)], rate: f64) -> Vec<Restart> {
     let moving =
         |(point, _): &&(Point, Vec<f64>)| matches!(point.quantity, Quantity::Displacement | Quantity::Velocity);
-    let seen = responses.iter().filter(moving).map(|(point, y)| (point.clone(), y[0]));
+    let readings = responses.iter().filter(moving).map(|(point, y)| (point.clone(), y[0]));
     let start = Restart {
         sample: 0,
-        seen: seen.collect(),
+        readings: readings.collect(),
     };
     let drifting = |(point, _): &&(Point, Vec<f64>)| role == Role::HeldOut && shows_drift(about, point);
     let drifting: Vec<_> = responses.iter().filter(drifting).collect();
@@ -90,7 +90,7 @@ pub fn restarts(about: &About, role: Role, responses: &[(Point, Vec<f64>)], rate
     let later = (1..WINDOWS).map(|k| k * window).take_while(|&sample| sample < length);
     let again = later.map(|sample| Restart {
         sample,
-        seen: drifting
+        readings: drifting
             .iter()
             .flat_map(|(point, y)| at_sample(point, y, sample, rate))
             .collect(),
@@ -98,13 +98,13 @@ pub fn restarts(about: &About, role: Role, responses: &[(Point, Vec<f64>)], rate
     std::iter::once(start).chain(again).collect()
 }
 
-/// True for a sensor that shows the position of a mass that no link holds.
+/// True for a sensor of the position of a mass that no link holds.
 fn shows_drift(about: &About, point: &Point) -> bool {
-    let state = about.states.iter().position(|state| is_seen(state, point));
+    let state = about.states.iter().position(|state| measures(state, point));
     state.is_some_and(|state| drifts(about, state))
 }
 
-/// True for the position of a mass that no link holds: nothing depends on it.
+/// True for the position of a mass that no link holds: no equation depends on it.
 pub fn drifts(about: &About, state: usize) -> bool {
     let matters = |entry: &crate::model::Entry| entry.matrix == Matrix::A && usize::from(entry.column) == state;
     about.states[state].kind == StateKind::Position && !about.matrices.iter().any(matters)

@@ -77,7 +77,7 @@ fn whitening_is_the_inverse_root_of_the_covariance() {
 
 /// Data drawn from the Gaussian process give back the discrepancy of the draw, and zero if the draw has none.
 #[test]
-fn discrepancy_is_learnt_from_its_own_draws() {
+fn discrepancy_is_estimated_from_its_own_draws() {
     let places: Vec<f64> = (0..400).map(|k| 0.1 * f64::from(k)).collect();
     let mut group = group(&places, 20.0);
     // Reproducible normal numbers: the Box-Muller method on a golden-ratio sequence.
@@ -87,12 +87,12 @@ fn discrepancy_is_learnt_from_its_own_draws() {
         (-2.0 * a.max(1e-12).ln()).sqrt() * (std::f64::consts::TAU * b).cos()
     };
     let white: Vec<f64> = (0..400).map(normal).collect();
-    group.learn(&white);
+    group.estimate(&white);
     assert!(group.tau < 0.01, "{} of noise alone", group.tau);
     let truth: f64 = 0.1;
     let factor = group.factor(truth);
     let drawn = factor.times(&white);
-    group.learn(&drawn);
+    group.estimate(&drawn);
     assert!((group.tau / truth - 1.0).abs() < 0.25, "{}, not {truth}", group.tau);
 }
 

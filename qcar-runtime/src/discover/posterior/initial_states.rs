@@ -1,14 +1,16 @@
 //! Initial states of held-out records, estimated from these records.
 //!
-//! A held-out record does not show the states of the masses at its first sample any better than a fitted record. With
-//! all fitted parameters held, the states are estimated with their prior by Gauss-Newton steps. For a linear model the
-//! first step is exact.
+//! Sensors do not measure all states of the masses at the first sample, in a held-out record as in a fitted one. With all
+//! fitted parameters fixed, the maximum a posteriori of these states is found by Gauss-Newton steps. For a linear model
+//! the first step is exact.
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::campaign::Role;
 use crate::discover::noise::Nuisance;
-use crate::discover::observe::{Evidence, Misread, PredictError, Prediction, Stimulus, predict_begun};
+use crate::discover::observe::{
+    Evidence, PredictError, Prediction, Stimulus, TestConditions, predict_by_initial_states,
+};
 use crate::model::Model;
 use crate::response::parameters::Values;
 
@@ -16,22 +18,22 @@ use crate::response::parameters::Values;
 const STEPS: usize = 10;
 /// Factor on a step that was too long.
 const SHORTER: f64 = 0.25;
-/// Relative gain of the sum of squares at which the steps end.
-const LITTLE: f64 = 1e-4;
+/// Relative decrease of the sum of squares below which the steps end.
+const CONVERGED: f64 = 1e-4;
 
-/// Completes `misread` with the initial states of the records of one role, for sensors with these coefficients.
+/// Completes `conditions` with the initial states of the records of one role, for these coefficients of the sensor errors.
 ///
 /// # Errors
 /// Fails if the model lacks a measured quantity.
-pub fn beginnings(
+pub fn estimate_initial_states(
     model: &dyn Model,
     values: &Values,
     (nuisance, coefficients): (&Nuisance, &[f64]),
     evidence: &Evidence,
     role: Role,
-    misread: &mut Misread,
+    conditions: &mut TestConditions,
 ) -> Result<(), PredictError> {
-    misread.begun.resize(evidence.runs.len(), Vec::new());
+    conditions.initial_states.resize(evidence.runs.len(), Vec::new());
     for (place, run) in evidence.runs.iter().enumerate().filter(|(_, run)| run.role == role) {
         let Stimulus::History { spread, .. } = &run.stimulus else {
             continue;
@@ -40,31 +42,31 @@ pub fn beginnings(
         let unknown: Vec<(String, f64)> = states
             .filter_map(|state| Some((state.name.to_string(), spread.sigma(state)?)))
             .collect();
-        misread.begun[place] = unknown.iter().map(|(name, _)| (name.clone(), 0.0)).collect();
-        let mut best = (f64::INFINITY, misread.begun[place].clone());
+        conditions.initial_states[place] = unknown.iter().map(|(name, _)| (name.clone(), 0.0)).collect();
+        let mut best = (f64::INFINITY, conditions.initial_states[place].clone());
         let mut step = DVector::zeros(unknown.len());
         for _ in 0..STEPS {
-            let predictions = predict_begun(model, values, misread, evidence, place)?;
+            let predictions = predict_by_initial_states(model, values, conditions, evidence, place)?;
             let rows = Rows::of(&predictions, (nuisance, coefficients), evidence, &unknown);
-            let (cost, next) = rows.solve(&misread.begun[place], &unknown);
+            let (cost, next) = rows.solve(&conditions.initial_states[place], &unknown);
             let gained = best.0 - cost;
             match next.filter(|_| gained > 0.0) {
                 Some(next) => {
-                    best = (cost, misread.begun[place].clone());
+                    best = (cost, conditions.initial_states[place].clone());
                     step = next;
                 }
                 // The step was too long for a nonlinear law.
                 None => step *= SHORTER,
             }
-            if gained > 0.0 && gained < LITTLE * cost {
+            if gained > 0.0 && gained < CONVERGED * cost {
                 break;
             }
-            let begun = misread.begun[place].iter_mut().zip(&best.1);
-            begun
+            let states = conditions.initial_states[place].iter_mut().zip(&best.1);
+            states
                 .zip(step.iter())
                 .for_each(|((own, best), step)| own.1 = best.1 + step);
         }
-        misread.begun[place] = best.1;
+        conditions.initial_states[place] = best.1;
     }
     Ok(())
 }
@@ -88,14 +90,14 @@ impl Rows {
         };
         for prediction in predictions {
             let series = &evidence.series[prediction.series];
-            let shown = nuisance.show(evidence, series, &prediction.value, coefficients);
-            let values = series.value.iter().zip(&shown.value).zip(&series.sigma);
+            let reading = nuisance.sensor_output(evidence, series, &prediction.value, coefficients);
+            let values = series.value.iter().zip(&reading.value).zip(&series.sigma);
             rows.residual
-                .extend(values.map(|((measured, shown), sigma)| (measured - shown).re / sigma));
+                .extend(values.map(|((measured, reading), sigma)| (measured - reading).re / sigma));
             for (column, (name, _)) in rows.columns.iter_mut().zip(unknown) {
-                let slope = prediction.begun.iter().find(|(state, _)| state == name);
+                let slope = prediction.by_initial_states.iter().find(|(state, _)| state == name);
                 let slope = slope.iter().flat_map(|(_, slope)| slope);
-                let values = slope.zip(&shown.factor).zip(&series.sigma);
+                let values = slope.zip(&reading.factor).zip(&series.sigma);
                 column.extend(values.map(|((slope, factor), sigma)| (slope * factor).re / sigma));
             }
         }
@@ -103,7 +105,7 @@ impl Rows {
     }
 
     /// Sum of squares including the prior, and the step to its minimum; `None` if that is not finite.
-    fn solve(&self, begun: &[(String, f64)], unknown: &[(String, f64)]) -> (f64, Option<DVector<f64>>) {
+    fn solve(&self, values: &[(String, f64)], unknown: &[(String, f64)]) -> (f64, Option<DVector<f64>>) {
         let count = unknown.len();
         // Scaled by the prior standard deviations, so that positions and velocities are comparable.
         let sigma = |k: usize| unknown[k].1;
@@ -115,7 +117,7 @@ impl Rows {
         let mut normal = &transposed * &jacobian;
         let mut slope = &transposed * &residual;
         let mut cost = residual.norm_squared();
-        for (k, (_, value)) in begun.iter().enumerate() {
+        for (k, (_, value)) in values.iter().enumerate() {
             normal[(k, k)] += 1.0;
             slope[k] -= value / sigma(k);
             cost += (value / sigma(k)).powi(2);

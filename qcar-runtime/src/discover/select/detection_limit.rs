@@ -1,53 +1,52 @@
-//! Detection limits: the effects that the data would have shown, if none was found.
+//! Detection limits, if no effect was found: the size at which each effect would have been found.
 //!
-//! An effect of its default size changes the predicted residuals. The part of this change that no other unknown can
-//! imitate, to first order, gives its gain in log likelihood. This gain is compared with the gain that a certain answer
-//! needs.
+//! An effect of its default size changes the residuals. The part of this change that the other unknowns cannot reproduce
+//! to first order gives its gain in log likelihood. This gain is compared with the gain that a certain answer needs.
 
 use rayon::prelude::*;
 
 use super::assembly::Assembly;
 use super::log_prior;
 use super::screen::{Point, Tangent};
-use crate::discover::answer::Visible;
+use crate::discover::answer::DetectionLimit;
 use crate::discover::candidate::Candidate;
 use crate::discover::numbers::Numbers;
 use crate::discover::observe::Evidence;
 use crate::discover::posterior::Refit;
 
 /// The detection limit of each effect at each place, in its first form; most visible first.
-pub fn visible(assembly: &Assembly, refit: &Refit, evidence: &Evidence) -> Vec<Visible> {
+pub fn detection_limits(assembly: &Assembly, refit: &Refit, evidence: &Evidence) -> Vec<DetectionLimit> {
     let tangent = Tangent::new(refit, assembly, evidence);
     let here = assembly.hypothesis().place(refit);
     let candidates = assembly.candidates();
-    let mut usual: Vec<&Candidate> = candidates
+    let mut first_forms: Vec<&Candidate> = candidates
         .iter()
         .filter(|candidate| !candidate.is_sensor() && !candidate.nuisance)
         .collect();
-    usual.dedup_by(|next, first| next.effect == first.effect && next.at == first.at);
-    let of = usual.into_par_iter().filter_map(|candidate| {
+    first_forms.dedup_by(|next, first| next.effect == first.effect && next.at == first.at);
+    let of = first_forms.into_par_iter().filter_map(|candidate| {
         let hypothesis = assembly.hypothesis_with(candidate)?;
-        let from = Point::usual(candidate).at(&here, &hypothesis, candidate);
+        let from = Point::at_start(candidate).at(&here, &hypothesis, candidate);
         let values = hypothesis.values(&from.named).ok()?;
         let (nuisance, coefficients) = hypothesis.nuisance_at(refit, &from);
         let nuisance = (nuisance, coefficients.as_slice());
         let there = refit.residuals_of(hypothesis.model(), &values, nuisance, assembly.model(), evidence)?;
-        let gain = tangent.trace(&there)? / 2.0;
-        let times = (gain / needed(candidate, &candidates, gain, &evidence.numbers)).sqrt();
-        times.is_finite().then(|| Visible {
+        let gain = tangent.independent_change(&there)? / 2.0;
+        let over_limit = (gain / needed(candidate, &candidates, gain, &evidence.numbers)).sqrt();
+        over_limit.is_finite().then(|| DetectionLimit {
             effect: candidate.effect.clone(),
             at: candidate.at.clone(),
-            usual: candidate
+            default_size: candidate
                 .parameters()
                 .iter()
                 .map(|p| (p.effect_name.clone(), p.start))
                 .collect(),
-            times,
+            over_limit,
         })
     });
-    let mut visible: Vec<Visible> = of.collect();
-    visible.sort_by(|a, b| b.times.total_cmp(&a.times));
-    visible
+    let mut limits: Vec<DetectionLimit> = of.collect();
+    limits.sort_by(|a, b| b.over_limit.total_cmp(&a.over_limit));
+    limits
 }
 
 /// Gain in log likelihood that makes an effect certain: the log odds against it, plus an Occam factor for each of its

@@ -1,12 +1,12 @@
 //! Expected information of further measurements: a D-optimal choice among sensors, runs, levels and dynamometers.
 //!
-//! The criterion is that of the [prospects](crate::fit::prospect) of a linear fit: the increase of the log determinant
-//! of the information about some parameters, with all other unknowns estimated too. The information is that of the fit
+//! The criterion is that of a [linear fit](crate::fit::design): the increase of the log determinant of the information
+//! about some parameters, with all other unknowns estimated too. The information is that of the fit
 //! residuals, whitened by the discrepancy. New measurements take the predictions of the fitted model as their values. A
 //! new sensor has the mean discrepancy of the sensors beside it.
 
 // Possible further measurements.
-mod further;
+mod measurements;
 
 use nalgebra::{DMatrix, DVector};
 
@@ -15,65 +15,65 @@ use super::refit::Refit;
 use crate::campaign::Role;
 use crate::discover::noise::Nuisance;
 use crate::discover::observe::{Evidence, PredictError};
-use crate::fit::prospect::{Prospect, Prospects};
+use crate::fit::design::{ExpectedGain, ExpectedGains};
 use crate::least_squares::Problem;
 use crate::least_squares::information::Information;
 use crate::model::Model;
-use crate::progress::{self, Told};
+use crate::progress::{self, OnProgress};
 
-/// Expected gain of each further measurement for the parameters of a refit of `model`, largest first. `matter` names
-/// the parameters that count; empty means all. `told` receives the progress after each measurement.
+/// Expected gain of each further measurement for the parameters of a refit of `model`, largest first. `wanted` names
+/// the parameters that count; if it is empty, all count. `on_progress` receives the progress after each measurement.
 ///
 /// # Errors
 /// Fails if the model cannot predict the evidence.
-pub fn prospects(
+pub fn expected_gains(
     model: &dyn Model,
     refit: &Refit,
     evidence: &Evidence,
-    matter: &[String],
-    told: Told<'_>,
-) -> Result<Prospects, PredictError> {
+    wanted: &[String],
+    on_progress: OnProgress<'_>,
+) -> Result<ExpectedGains, PredictError> {
     let fitted = refit.fitted_of(evidence);
     let name = |k: usize| &*model.about().parameters[refit.free[k].parameter].name;
-    let counts = |k: &usize| matter.is_empty() || matter.iter().any(|own| *own == name(*k));
+    let counts = |k: &usize| wanted.is_empty() || wanted.iter().any(|own| *own == name(*k));
     let counted: Vec<usize> = (0..refit.free.len()).filter(counts).collect();
-    let now = Said::by(refit, model, &fitted, &counted)?;
-    let all = further::measurements(refit, model, &fitted)?;
-    let further = progress::map(&all, told, |own| {
-        let said = Said::by(refit, model, &own.evidence, &counted)?;
-        Ok(Prospect {
+    let now = Expected::by(refit, model, &fitted, &counted)?;
+    let all = measurements::measurements(refit, model, &fitted)?;
+    let further = progress::map(&all, on_progress, |own| {
+        let expected = Expected::by(refit, model, &own.evidence, &counted)?;
+        Ok(ExpectedGain {
             kind: own.kind,
             what: own.what.clone(),
-            rise: said.information - now.information,
-            errors: said.errors,
+            rise: expected.information - now.information,
+            errors: expected.errors,
         })
     });
     let mut further = further.into_iter().collect::<Result<Vec<_>, PredictError>>()?;
     further.retain(|own| own.rise.is_finite());
     further.sort_by(|a, b| b.rise.total_cmp(&a.rise));
-    Ok(Prospects {
+    Ok(ExpectedGains {
         parameters: refit.free.iter().map(|free| free.parameter).collect(),
         errors: now.errors,
         further,
     })
 }
 
-/// Information of the evidence about the parameters.
-struct Said {
+/// Expected result of a fit to some evidence.
+struct Expected {
     /// Log determinant of the information about the parameters that count, including their priors.
     information: f64,
     /// Standard errors as the fit reports them; `None` if a parameter is not determined or at its bound.
     errors: Vec<Option<f64>>,
 }
 
-impl Said {
+impl Expected {
     fn by(refit: &Refit, model: &dyn Model, evidence: &Evidence, counted: &[usize]) -> Result<Self, PredictError> {
-        let mut nuisance = Nuisance::of(evidence).beginning(model.about(), evidence);
+        let mut nuisance = Nuisance::of(evidence).with_initial_states(model.about(), evidence);
         nuisance.without_offset.clone_from(&refit.nuisance.without_offset);
         let mut posterior = Posterior::new(model, refit.values.clone(), &refit.free, evidence, nuisance);
         let known = refit.discrepancy.as_ref();
         posterior.discrepancy = known.map(|known| known.expected_of(evidence, Role::Fit));
-        posterior.by_evidence = posterior.discrepancy.is_some();
+        posterior.has_discrepancy = posterior.discrepancy.is_some();
         posterior.centre = refit.centre.clone();
         // Sensor errors and initial state deviations are taken as zero: they are small and hardly change the Jacobian.
         let mut place = refit.estimate.clone();
@@ -82,7 +82,7 @@ impl Said {
         let mut residual = DVector::zeros(posterior.residuals());
         let mut jacobian = DMatrix::zeros(posterior.residuals(), posterior.variables());
         posterior.evaluate(&place, residual.as_mut_slice(), jacobian.as_mut_slice());
-        posterior.refused.take().map_or(Ok(()), Err)?;
+        posterior.failure.take().map_or(Ok(()), Err)?;
         let data = posterior.residuals + posterior.sigmas.len();
         let is_inside = |k: usize| refit.at_bound.get(k).is_none_or(|side| *side == 0);
         let inside: Vec<bool> = (0..posterior.variables()).map(is_inside).collect();
@@ -90,7 +90,7 @@ impl Said {
         let error = |k: usize| {
             let place = information.seen().iter().position(|&seen| seen == k)?;
             let variance = refit.scatter() * information.inverse()[(place, place)];
-            Some((variance + (refit.made * refit.estimate[k]).powi(2)).sqrt())
+            Some((variance + (refit.side_sd * refit.estimate[k]).powi(2)).sqrt())
         };
         Ok(Self {
             errors: (0..refit.free.len()).map(error).collect(),

@@ -1,4 +1,4 @@
-//! Predictions as sensors with errors show them.
+//! Readings of sensors with errors for a predicted series.
 
 use std::f64::consts::TAU;
 
@@ -9,20 +9,26 @@ use super::nuisance::{Nuisance, rms};
 use crate::discover::observe::{Evidence, Kind, Series};
 use crate::transmissibility::Point;
 
-/// A predicted series as a sensor with errors shows it.
+/// Reading of a sensor with errors for a predicted series.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shown {
-    /// Shown values.
+pub struct SensorOutput {
+    /// Readings.
     pub value: Vec<Complex<f64>>,
-    /// Factor of the sensors on each predicted value.
+    /// Factor of the sensor errors on each predicted value.
     pub factor: Vec<Complex<f64>>,
-    /// Derivatives of the shown values along the coefficients, each with the position of its coefficient.
+    /// Derivatives of the readings by the coefficients, each with the position of its coefficient.
     pub slopes: Vec<(usize, Vec<Complex<f64>>)>,
 }
 
 impl Nuisance {
     /// Applies the sensor errors with these coefficients to a predicted series.
-    pub fn show(&self, evidence: &Evidence, series: &Series, value: &[Complex<f64>], coefficients: &[f64]) -> Shown {
+    pub fn sensor_output(
+        &self,
+        evidence: &Evidence,
+        series: &Series,
+        value: &[Complex<f64>],
+        coefficients: &[f64],
+    ) -> SensorOutput {
         let logarithmic = self.slopes(evidence, series);
         let mut exponent = vec![Complex::ZERO; value.len()];
         for (k, slope) in &logarithmic {
@@ -42,17 +48,17 @@ impl Nuisance {
         let offset = self.offset(evidence, series);
         let added = offset.map_or(0.0, |(k, unit)| unit * coefficients[k]);
         slopes.extend(offset.map(|(k, unit)| (k, vec![Complex::from(unit); value.len()])));
-        Shown {
+        SensorOutput {
             value: scaled.iter().map(|value| value + added).collect(),
             factor,
             slopes,
         }
     }
 
-    /// Position of the offset coefficient of a series and the offset for a coefficient of 1. `None` if the series has
-    /// no offset. The unit is the RMS of all records of the sensor, or of the K&C curve.
+    /// Position of the offset coefficient of a series, and the offset for a coefficient of 1: the RMS of all records of
+    /// the sensor, or of the K&C curve. `None` if the series has no offset.
     fn offset(&self, evidence: &Evidence, series: &Series) -> Option<(usize, f64)> {
-        if !evidence.runs[series.run].stimulus.holds_rest() {
+        if !evidence.runs[series.run].stimulus.passes_mean() {
             return None;
         }
         let place = self.coefficient(&series.sensor, Form::Offset)?;
@@ -80,9 +86,10 @@ impl Nuisance {
         records.filter_map(offset).collect()
     }
 
-    /// For each coefficient, its derivative of the logarithm of each value of a series.
+    /// Derivatives of the logarithm of each value of a series by the coefficients.
     ///
-    /// The reference is read at the excitation frequency, the response at `order` times that frequency.
+    /// The errors of the reference apply at the excitation frequency, those of the response at `order` times that
+    /// frequency.
     fn slopes(&self, evidence: &Evidence, series: &Series) -> Vec<(usize, Vec<Complex<f64>>)> {
         let constant = |k: usize| (k, vec![Complex::ONE; series.at.len()]);
         match series.kind {
@@ -100,13 +107,13 @@ impl Nuisance {
                     .map(constant)
                     .collect()
             }
-            // A recorded input drives the model, so a calibration gain is equivalent to a parameter change; it stays in
-            // the uncertainty of the values.
+            // A recorded input drives the model, so a calibration gain acts like a parameter change. It stays in the
+            // uncertainty of the values.
             Kind::Time => self.suspected(&series.sensor, Form::Gain(0)).map(constant).collect(),
         }
     }
 
-    /// Log derivatives along the errors of one sensor, read at `times` the frequency of the series.
+    /// Log derivatives by the errors of one sensor at `times` the frequency of the series.
     fn of_sensor(&self, sensor: &Point, series: &Series, sign: f64, times: f64) -> Vec<(usize, Vec<Complex<f64>>)> {
         let factors = SENSOR
             .iter()

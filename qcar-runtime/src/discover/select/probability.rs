@@ -1,10 +1,10 @@
 //! Probability of each set.
 //!
-//! If the most probable set leaves no more than noise, this is its posterior probability. If it leaves more, no model
-//! is right in every detail. The evidence of many data then prefers one of two slightly wrong models with a certainty
-//! that other data would reverse. In that case the probability is the bagged posterior (Huggins and Miller, Bayesian
-//! Analysis 18, 2023): the mean of the posterior over data that are resampled with replacement. It is as uncertain as
-//! the data scatter. Each fit is kept: resampling changes the weights of the data, not the parameters.
+//! If the residuals of the most probable set are no larger than noise, this is its posterior probability. Otherwise no
+//! model is exactly right. With many data the posterior then strongly prefers one of two slightly wrong models, and new
+//! data might reverse this preference. In that case the probability is the bagged posterior (Huggins and Miller,
+//! Bayesian Analysis 18, 2023): the mean of the posterior over data that are resampled with replacement, which includes
+//! the scatter of the data. Resampling changes the weights of the data; the fitted parameters stay.
 
 use super::set::{Set, leaves_more_than_noise};
 use crate::campaign::Role;
@@ -63,7 +63,7 @@ mod tests {
 
     /// If all parts of the data agree, resampling leaves the preference of the evidence unchanged.
     #[test]
-    fn data_that_agree_leave_no_doubt() {
+    fn data_that_agree_keep_the_probability() {
         let parts = [vec![0.0; 40], vec![0.5; 40]];
         let probability = bagged(&[0.0, 20.0], &parts);
         assert!(probability[1] > 0.999_999, "{probability:?}");

@@ -2,7 +2,7 @@
 
 use qcar_dsl::difference::{Difference, difference};
 use qcar_runtime::campaign::Test;
-use qcar_runtime::discover::Kappa;
+use qcar_runtime::discover::MissingStiffness;
 use qcar_runtime::discover::observe::Kind;
 use qcar_runtime::discover::posterior::Tile;
 use serde::Serialize;
@@ -11,32 +11,32 @@ use super::gather::Study;
 use crate::report::rounded::{curve, rounded};
 use crate::verbs::discover::places::{Site, sites};
 
-/// A part of the gap.
+/// A part of the residual.
 #[derive(Serialize)]
 pub struct Patch {
     channel: String,
-    /// `harmonic`, `time`, `passage`, `travel`, `width` or `cycle`.
+    /// Kind: `harmonic`, `time`, `passage`, `travel`, `width` or `cycle`.
     kind: &'static str,
     harmonic: Option<usize>,
-    /// Hz of a harmonic, m of a travel, else s.
+    /// Position: Hz for a harmonic, m for a travel, otherwise s.
     span: (f64, f64),
-    /// Its file.
+    /// File of the run.
     run: String,
-    /// In the unit of its run: m/s of a sweep.
+    /// Level in the unit of the run: m/s for a sweep.
     level: f64,
-    /// Over an obstacle, m/s.
+    /// Speed over an obstacle, m/s.
     speed: Option<f64>,
-    /// RMS over the uncertainty.
+    /// RMS of the normalised residuals.
     strength: f64,
 }
 
-/// What would have to be added at a place.
+/// Missing dynamic stiffness at a place.
 #[derive(Serialize)]
 pub struct Explanation {
-    /// In words.
+    /// Name of the place.
     place: String,
     sensor: bool,
-    /// Share of the squared gap that a κ free in every run explains, and one for all runs.
+    /// Share of the squared residual that a κ free in every run explains, and that a common κ explains.
     ceiling: f64,
     common: f64,
     runs: Vec<Stiffness>,
@@ -46,15 +46,15 @@ pub struct Explanation {
 #[derive(Serialize)]
 struct Stiffness {
     level: f64,
-    /// Hz.
+    /// Frequencies, Hz.
     frequency: Vec<f64>,
-    /// N/m, without unit of a sensor.
+    /// κ, N/m; without unit for a sensor.
     real: Vec<f64>,
     imaginary: Vec<f64>,
     sigma: Vec<f64>,
 }
 
-/// All parts, the strongest first.
+/// All parts, largest first.
 pub fn patches(of: &Study, tiles: &[Tile]) -> Vec<Patch> {
     let patch = |tile: &Tile| Patch {
         run: of.answer.evidence.runs[tile.run].name.clone(),
@@ -77,7 +77,7 @@ pub fn patches(of: &Study, tiles: &[Tile]) -> Vec<Patch> {
     tiles.iter().map(patch).collect()
 }
 
-/// How fast a run rolls over its obstacle; `None` of other runs.
+/// Speed of a run over an obstacle, m/s; `None` for other runs.
 fn speed(of: &Study, file: &str) -> Option<f64> {
     let run = of.fitted.campaign.runs.iter().find(|run| run.name == file)?;
     match &run.test {
@@ -86,12 +86,12 @@ fn speed(of: &Study, file: &str) -> Option<f64> {
     }
 }
 
-/// A parameter as the search has it, with all that was found.
+/// A parameter in the search and its value with the findings.
 #[derive(Serialize)]
 pub struct Refitted {
     name: String,
     value: f64,
-    /// `None` for one that was not fitted, or is not determined.
+    /// Standard error; `None` if it was not fitted or is not determined.
     stderr: Option<f64>,
 }
 
@@ -113,12 +113,12 @@ pub fn refitted(of: &Study) -> Vec<Refitted> {
     refitted.collect()
 }
 
-/// Places whose κ is shown.
+/// Number of places whose κ is shown.
 const SHOWN: usize = 8;
 
-/// The places that explain the gap of the sweeps best; none without sweeps.
+/// The places that explain the residuals of the sweeps best; empty without sweeps.
 pub fn explanations(of: &Study) -> Vec<Explanation> {
-    let explanation = |(site, kappa): (Site, &Kappa)| Explanation {
+    let explanation = |(site, kappa): (Site, &MissingStiffness)| Explanation {
         place: site.name(),
         sensor: site.sensor.is_some(),
         ceiling: rounded(kappa.ceiling),
@@ -128,7 +128,7 @@ pub fn explanations(of: &Study) -> Vec<Explanation> {
     sites(&of.answer).into_iter().take(SHOWN).map(explanation).collect()
 }
 
-fn stiffness(of: &qcar_runtime::discover::locate::KappaRun) -> Stiffness {
+fn stiffness(of: &qcar_runtime::discover::locate::RunStiffness) -> Stiffness {
     Stiffness {
         level: of.level,
         frequency: curve(of.frequency.iter().copied()),
@@ -138,7 +138,7 @@ fn stiffness(of: &qcar_runtime::discover::locate::KappaRun) -> Stiffness {
     }
 }
 
-/// In what the new model differs.
+/// Differences of the extended model.
 pub fn changes(of: &Study) -> Option<Difference> {
     of.after
         .as_ref()

@@ -1,23 +1,23 @@
-//! Checks sets on the held-out runs, which no fit and no choice has seen.
+//! Checks sets on the held-out runs, which no fit and no choice has used.
 
-use super::set::{Set, closed, is_part, most_probable};
+use super::set::{Set, explained_share, is_part, most_probable};
 use crate::campaign::Role;
 use crate::discover::observe::Evidence;
 
 /// The set itself, or the part of it that remains after unsupported effects are removed. A smaller set replaces the set
 /// if it predicts the held-out runs at least as well, if the additional effects explain too little of its excess
-/// residual, or if one of them stands in for another effect. The last check needs no held-out runs.
-pub fn predictive(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
-    let judges = evidence.of_role(Role::HeldOut).next().is_some();
+/// residual, or if one of them has a parameter at its bound. The last check needs no held-out runs.
+pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
+    let has_held_out = evidence.of_role(Role::HeldOut).next().is_some();
     loop {
         let count = sets[best].names().len();
         let is_less = |other: &usize| sets[*other].names().len() < count && is_part(&sets[*other], &sets[best]);
-        let is_answer = |other: &usize| is_less(other) && !sets[*other].stands_at_an_end();
+        let is_answer = |other: &usize| is_less(other) && !sets[*other].has_magnitude_at_bound();
         let withdrawn = |&part: &usize| {
-            let closes = closed(&sets[part].explanation, &sets[best].explanation, evidence);
-            let changes_little = !sets[part].names().is_empty() && closes < evidence.numbers.explained();
-            let fails = judges && (changes_little || !predicts(&sets[best], &sets[part], evidence));
-            fails || sets[best].adds_a_substitute(&sets[part])
+            let explained = explained_share(&sets[part].explanation, &sets[best].explanation, evidence);
+            let changes_little = !sets[part].names().is_empty() && explained < evidence.numbers.explained();
+            let fails = has_held_out && (changes_little || !predicts_better(&sets[best], &sets[part], evidence));
+            fails || sets[best].adds_effect_at_bound(&sets[part])
         };
         match most_probable(sets, (0..sets.len()).filter(is_answer).filter(withdrawn)) {
             Some(part) => best = part,
@@ -27,9 +27,9 @@ pub fn predictive(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
 }
 
 /// True if a set predicts the held-out runs better than another set, or if no run is held out.
-pub fn predicts(set: &Set, other: &Set, evidence: &Evidence) -> bool {
-    let nothing_judges = evidence.of_role(Role::HeldOut).next().is_none();
-    nothing_judges || log_score(set, evidence) > log_score(other, evidence)
+pub fn predicts_better(set: &Set, other: &Set, evidence: &Evidence) -> bool {
+    let none_held_out = evidence.of_role(Role::HeldOut).next().is_none();
+    none_held_out || log_score(set, evidence) > log_score(other, evidence)
 }
 
 /// Logarithmic score: the log likelihood of the held-out runs, up to a constant.

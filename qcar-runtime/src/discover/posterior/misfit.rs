@@ -2,18 +2,19 @@
 
 use std::collections::BTreeMap;
 
-use super::beginning::beginnings;
+use super::initial_states::estimate_initial_states;
 use super::refit::Refit;
 use super::residual::scaled;
 use crate::campaign::Role;
 use crate::discover::observe::{Evidence, Kind, PredictError, Series, predict_sides, unsteady};
-use crate::mean;
+use crate::mean::rms_or_nan;
 use crate::model::Model;
 use crate::transmissibility::Point;
 
-/// Residuals of a fitted model over their uncertainty. An RMS of 1 is noise.
+/// Normalised residuals of a fitted model: measured minus modelled, over the standard deviation. Noise alone has an RMS
+/// of 1.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Gap {
+pub struct Misfit {
     /// RMS of the normalised residual on the fitted runs; NaN without any.
     pub fit: f64,
     /// The same RMS on the held-out runs; NaN without any.
@@ -48,7 +49,7 @@ pub struct Tile {
     pub count: usize,
 }
 
-impl Gap {
+impl Misfit {
     /// Compares a refitted model with all runs, with the sensor errors of the fitted runs.
     ///
     /// # Errors
@@ -56,46 +57,46 @@ impl Gap {
     pub fn of(model: &dyn Model, refit: &Refit, evidence: &Evidence) -> Result<Self, PredictError> {
         let mut residuals = vec![Vec::new(); evidence.series.len()];
         let sensors = (&refit.nuisance, refit.coefficients.as_slice());
-        let mut misread = refit.nuisance.misread(evidence, &refit.coefficients);
-        beginnings(model, &refit.values, sensors, evidence, Role::HeldOut, &mut misread)?;
+        let mut conditions = refit.nuisance.conditions(evidence, &refit.coefficients);
+        estimate_initial_states(model, &refit.values, sensors, evidence, Role::HeldOut, &mut conditions)?;
         for role in [Role::Fit, Role::HeldOut] {
-            let unsteady = unsteady(model, &refit.values, &misread, evidence, role)?;
+            let unsteady = unsteady(model, &refit.values, &conditions, evidence, role)?;
             let sides = [&refit.values, &refit.side];
-            for mut prediction in predict_sides(model, sides, &misread, &[], evidence, &|run| run.role == role)? {
+            for mut prediction in predict_sides(model, sides, &conditions, &[], evidence, &|run| run.role == role)? {
                 let series = &evidence.series[prediction.series];
                 prediction.add(&unsteady[prediction.series]);
-                let shown = refit.measured(evidence, &prediction);
-                let differences = series.value.iter().zip(shown).map(|(measured, shown)| measured - shown);
+                let reading = refit.sensor_output(evidence, &prediction);
+                let differences = series
+                    .value
+                    .iter()
+                    .zip(reading)
+                    .map(|(measured, reading)| measured - reading);
                 scaled(series, &series.sigma, differences, &mut residuals[prediction.series]);
             }
         }
         let of_role = |role| {
-            rms(evidence
-                .of_role(role)
-                .flat_map(|(place, _)| residuals[place].iter().copied()))
+            rms_or_nan(
+                evidence
+                    .of_role(role)
+                    .flat_map(|(place, _)| residuals[place].iter().copied()),
+            )
         };
         Ok(Self {
             fit: of_role(Role::Fit),
             held_out: of_role(Role::HeldOut),
-            series: residuals.iter().map(|series| rms(series.iter().copied())).collect(),
+            series: residuals
+                .iter()
+                .map(|series| rms_or_nan(series.iter().copied()))
+                .collect(),
             tiles: tiles(evidence, &residuals),
             residuals,
         })
     }
 }
 
-/// Root mean square; NaN without values.
-pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values = values.peekable();
-    match values.peek() {
-        Some(_) => mean::rms(values),
-        None => f64::NAN,
-    }
-}
-
-/// Tiles of an octave.
+/// Number of tiles in an octave.
 const PER_OCTAVE: f64 = 6.0;
-/// Tiles of a record.
+/// Number of tiles in a record.
 const PER_RECORD: f64 = 20.0;
 
 fn tiles(evidence: &Evidence, residuals: &[Vec<f64>]) -> Vec<Tile> {

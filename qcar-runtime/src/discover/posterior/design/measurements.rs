@@ -3,9 +3,9 @@
 use nalgebra::Complex;
 
 use crate::campaign::{Axis, Quantity, Role};
-use crate::discover::observe::{Evidence, Kind, Misread, PredictError, Run, Series, Stimulus, predict_sides};
+use crate::discover::observe::{Evidence, Kind, PredictError, Run, Series, Stimulus, TestConditions, predict_sides};
 use crate::discover::posterior::Refit;
-use crate::fit::prospect::Kind as Added;
+use crate::fit::design::Kind as Added;
 use crate::mean::rms;
 use crate::model::{Link, Model, Output, SignalKind};
 use crate::transmissibility::Point;
@@ -24,8 +24,8 @@ const SPEEDS: [f64; 7] = [0.05, 0.13, 0.26, 0.39, 0.52, 0.79, 1.05];
 const AMPLITUDE: f64 = 0.05;
 /// Relative uncertainty of the dynamometer forces.
 const UNCERTAINTY: f64 = 0.01;
-/// Factor on the amplitude of a second dynamometer test: it separates laws with inner states.
-const SHORTER: f64 = 0.1;
+/// Factor on the amplitude of a second dynamometer test, which determines the inner states of a law.
+const SHORT_STROKE: f64 = 0.1;
 
 /// All measurements that could be added to the fitted evidence.
 ///
@@ -35,15 +35,15 @@ pub fn measurements(refit: &Refit, model: &dyn Model, fitted: &Evidence) -> Resu
     let mut found = Vec::new();
     for run in 0..fitted.runs.len() {
         let name = &fitted.runs[run].name;
-        found.push((Added::Repeat, format!("{name} once more"), again(fitted, run, 1.0)));
+        found.push((Added::Repeat, format!("{name} once more"), repeated(fitted, run, 1.0)));
         if is_steady(&fitted.runs[run].stimulus) {
             let what = format!("{name} once more at twice its level");
-            found.push((Added::Level, what, again(fitted, run, 2.0)));
+            found.push((Added::Level, what, repeated(fitted, run, 2.0)));
         }
     }
     for (run, own) in fitted.runs.iter().enumerate() {
         if let Stimulus::Dynamometer { link, axis, .. } = &own.stimulus
-            && remembers(model, link, *axis)
+            && has_inner_states(model, link, *axis)
         {
             let what = format!("{} once more with a tenth of its stroke", own.name);
             found.push((Added::Level, what, shorter(fitted, run)));
@@ -54,19 +54,19 @@ pub fn measurements(refit: &Refit, model: &dyn Model, fitted: &Evidence) -> Resu
         found.extend(added.filter(|(_, what, _)| found.iter().all(|(_, other, _)| other != what)));
     }
     for (place, link) in model.about().links.iter().enumerate() {
-        if model.alone(place).is_some() && says_something(refit, link) && !is_measured(fitted, link) {
+        if model.alone(place).is_some() && has_free_parameter(refit, link) && !is_measured(fitted, link) {
             let what = format!("a dynamometer's table of {}", link.name);
             found.push((Added::Dynamometer, what, with_dynamometer(fitted, link)));
         }
     }
-    let expected = |(kind, what, evidence): (Added, String, Evidence)| {
+    let measurement = |(kind, what, evidence): (Added, String, Evidence)| {
         Ok(Measurement {
             kind,
             what,
-            evidence: expected(refit, model, fitted, evidence)?,
+            evidence: predicted(refit, model, fitted, evidence)?,
         })
     };
-    found.into_iter().map(expected).collect()
+    found.into_iter().map(measurement).collect()
 }
 
 /// True for a run with a steady sine, which can be predicted at any level.
@@ -74,8 +74,9 @@ fn is_steady(stimulus: &Stimulus) -> bool {
     matches!(stimulus, Stimulus::Sweep { .. } | Stimulus::Sine { .. })
 }
 
-/// Repeats a run at `times` its level. The noise stays the same, so ratios to the excitation have less of it.
-fn again(fitted: &Evidence, run: usize, times: f64) -> Evidence {
+/// Repeats a run at `times` its level. The noise of the sensors stays the same, so that of ratios to the excitation is
+/// smaller.
+fn repeated(fitted: &Evidence, run: usize, times: f64) -> Evidence {
     let mut more = fitted.clone();
     let own = &fitted.runs[run];
     let mut added = Run {
@@ -99,7 +100,7 @@ fn again(fitted: &Evidence, run: usize, times: f64) -> Evidence {
 }
 
 /// True if the law of a link has inner states, so that its force depends on the stroke.
-fn remembers(model: &dyn Model, link: &str, axis: Axis) -> bool {
+fn has_inner_states(model: &dyn Model, link: &str, axis: Axis) -> bool {
     let links = model.about().links.iter();
     let place = links
         .clone()
@@ -110,9 +111,9 @@ fn remembers(model: &dyn Model, link: &str, axis: Axis) -> bool {
 
 /// Repeats a dynamometer table at the same speeds with shorter strokes.
 fn shorter(fitted: &Evidence, run: usize) -> Evidence {
-    let mut more = again(fitted, run, 1.0);
+    let mut more = repeated(fitted, run, 1.0);
     if let Some(Stimulus::Dynamometer { amplitude, .. }) = more.runs.last_mut().map(|run| &mut run.stimulus) {
-        *amplitude *= SHORTER;
+        *amplitude *= SHORT_STROKE;
     }
     more
 }
@@ -160,7 +161,7 @@ fn with_sensor(fitted: &Evidence, output: &Output) -> Option<(String, Evidence)>
 }
 
 /// True if the law of a link has a fitted parameter.
-fn says_something(refit: &Refit, link: &Link) -> bool {
+fn has_free_parameter(refit: &Refit, link: &Link) -> bool {
     let mut free = refit.free.iter();
     free.any(|free| link.parameters.iter().any(|&own| usize::from(own) == free.parameter))
 }
@@ -201,7 +202,12 @@ fn with_dynamometer(fitted: &Evidence, link: &Link) -> Evidence {
 }
 
 /// Replaces the values of all new series by the predictions of the fitted model.
-fn expected(refit: &Refit, model: &dyn Model, fitted: &Evidence, mut more: Evidence) -> Result<Evidence, PredictError> {
+fn predicted(
+    refit: &Refit,
+    model: &dyn Model,
+    fitted: &Evidence,
+    mut more: Evidence,
+) -> Result<Evidence, PredictError> {
     let new: Vec<usize> = more.series[fitted.series.len()..]
         .iter()
         .map(|series| series.run)
@@ -209,7 +215,7 @@ fn expected(refit: &Refit, model: &dyn Model, fitted: &Evidence, mut more: Evide
     let names: Vec<String> = new.iter().map(|&run| more.runs[run].name.clone()).collect();
     let wanted = |run: &Run| names.contains(&run.name);
     let sides = [&refit.values, &refit.side];
-    let predicted = predict_sides(model, sides, &Misread::default(), &[], &more, &wanted)?;
+    let predicted = predict_sides(model, sides, &TestConditions::default(), &[], &more, &wanted)?;
     for own in predicted.into_iter().filter(|own| own.series >= fitted.series.len()) {
         let series = &mut more.series[own.series];
         let size = |values: &[Complex<f64>]| rms(values.iter().map(|value| value.norm()));

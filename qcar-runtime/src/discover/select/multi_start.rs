@@ -1,4 +1,5 @@
-//! Fits a model without a search for missing effects: the best optimum in its ranges, and the local minima of the cost.
+//! Fits a model from many starts, without a search for missing effects: the best optimum within the ranges, and the other
+//! local minima of the cost.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +8,7 @@ use rayon::prelude::*;
 use super::assembly::{Assembly, Hypothesis, Place};
 use super::{fidelity, race::Fidelity};
 use crate::campaign::Role;
-use crate::discover::answer::{News, Progress};
+use crate::discover::answer::{Progress, Update};
 use crate::discover::candidate::Workshop;
 use crate::discover::observe::{Evidence, PredictError};
 use crate::discover::posterior::{Explanation, Given, Refit, Setting};
@@ -17,12 +18,12 @@ use crate::least_squares::Bounds;
 /// Rounds and evaluations of the searches: of all starts, of the best half of them, and of the remaining minima.
 const SEARCHES: [(usize, usize); 3] = [(1, 8), (1, 30), (2, 30)];
 /// Rounds and evaluations of the final fit.
-const TO_THE_END: (usize, usize) = (3, 60);
+const FINAL: (usize, usize) = (3, 60);
 /// Log evidence difference below which two searches count as the same minimum: odds of less than three to one.
-const SAME: f64 = 1.0;
+const SAME_MINIMUM: f64 = 1.0;
 
 /// The best explanation by a model, and its other local minima.
-pub struct Alone {
+pub struct MultiStart {
     /// The explanation at the highest posterior found.
     pub explanation: Explanation,
     /// Other minima, the most probable first.
@@ -37,36 +38,36 @@ pub struct Minimum {
     pub named: BTreeMap<String, f64>,
 }
 
-/// Fits a model to all fitted runs from the given values and from `count` starts in total, spread over the ranges.
+/// Fits a model to all fitted runs from `count` starts: the given values, and others spread over the ranges.
 ///
 /// # Errors
 /// Fails if no run may be fitted, if the model lacks a measured quantity, if a parameter has no value, or if no search
 /// gives a finite evidence.
-pub fn alone(
+pub fn fit_from_starts(
     workshop: Box<dyn Workshop>,
     setting: &Setting,
     evidence: &Evidence,
     count: usize,
     progress: Progress<'_>,
-) -> Result<Alone, PredictError> {
+) -> Result<MultiStart, PredictError> {
     if evidence.of_role(Role::Fit).next().is_none() {
         return Err(PredictError::NothingToFit);
     }
     let assembly = Assembly::base(workshop.into(), setting, evidence)?;
     let (hypothesis, fidelity) = (assembly.hypothesis(), fidelity(evidence));
-    progress(News::Doing(&format!("searching from {count} starts")));
+    progress(Update::Step(&format!("searching from {count} starts")));
     let minima = minima(&hypothesis, spread(assembly.given(), count), &fidelity)?;
-    progress(News::Doing("searching to the end"));
+    progress(Update::Step("refining the best fit"));
     let best = hypothesis.fit(&hypothesis.place(&minima[0]), &fidelity.fine, SEARCHES[2])?;
-    let settled = hypothesis.explanation(best, evidence)?.refit;
+    let with_unsteady = hypothesis.explanation(best, evidence)?.refit;
     // Subtract the non-steady part of the sweeps from the measurement; the fit compares steady harmonics only.
-    let steady = super::fidelity(&evidence.less(&settled.unsteady)).fine;
-    let refit = hypothesis.fit(&hypothesis.place(&settled), &steady, TO_THE_END)?;
+    let steady = super::fidelity(&evidence.minus(&with_unsteady.unsteady)).fine;
+    let refit = hypothesis.fit(&hypothesis.place(&with_unsteady), &steady, FINAL)?;
     let other = |other: &Refit| Minimum {
         log_odds: minima[0].log_evidence - other.log_evidence,
         named: hypothesis.place(other).named,
     };
-    Ok(Alone {
+    Ok(MultiStart {
         explanation: hypothesis.explanation(refit, evidence)?,
         others: minima[1..].iter().map(other).collect(),
     })
@@ -82,46 +83,46 @@ fn minima(
         named,
         ..Place::given(&fidelity.coarse)
     });
-    let mut found = searched(hypothesis, places.collect(), &fidelity.coarse, SEARCHES[0])?;
+    let mut found = fitted(hypothesis, places.collect(), &fidelity.coarse, SEARCHES[0])?;
     found.truncate(found.len().div_ceil(2));
     let places = found.iter().map(|refit| hypothesis.place(refit)).collect();
-    let found = different(searched(hypothesis, places, &fidelity.coarse, SEARCHES[1])?);
+    let found = distinct(fitted(hypothesis, places, &fidelity.coarse, SEARCHES[1])?);
     let places = found.iter().map(|refit| hypothesis.place(refit)).collect();
-    Ok(different(searched(hypothesis, places, &fidelity.medium, SEARCHES[2])?))
+    Ok(distinct(fitted(hypothesis, places, &fidelity.medium, SEARCHES[2])?))
 }
 
 /// Fits from these places, most probable first.
-fn searched(
+fn fitted(
     hypothesis: &Hypothesis<'_>,
     places: Vec<Place>,
     evidence: &Evidence,
     budget: (usize, usize),
 ) -> Result<Vec<Refit>, PredictError> {
     let fits = places.par_iter().map(|place| hypothesis.fit(place, evidence, budget));
-    let mut refusal = PredictError::NoNumber;
+    let mut failure = PredictError::NoNumber;
     let mut found = Vec::new();
     for fit in fits.collect::<Vec<_>>() {
         match fit {
             Ok(refit) if refit.log_evidence.is_finite() => found.push(refit),
             Ok(_) => (),
             // A start that cannot be predicted does not stop the others.
-            Err(error) => refusal = error,
+            Err(error) => failure = error,
         }
     }
     found.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
-    if found.is_empty() { Err(refusal) } else { Ok(found) }
+    if found.is_empty() { Err(failure) } else { Ok(found) }
 }
 
 /// Keeps one fit for each minimum. The input is sorted by evidence, best first.
-fn different(sorted: Vec<Refit>) -> Vec<Refit> {
-    let mut different: Vec<Refit> = Vec::new();
+fn distinct(sorted: Vec<Refit>) -> Vec<Refit> {
+    let mut distinct: Vec<Refit> = Vec::new();
     for refit in sorted {
-        let last = different.last();
-        if last.is_none_or(|last| last.log_evidence - refit.log_evidence > SAME) {
-            different.push(refit);
+        let last = distinct.last();
+        if last.is_none_or(|last| last.log_evidence - refit.log_evidence > SAME_MINIMUM) {
+            distinct.push(refit);
         }
     }
-    different
+    distinct
 }
 
 /// Start points: the given values, and others spread over the ranges.

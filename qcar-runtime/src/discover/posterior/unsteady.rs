@@ -1,4 +1,4 @@
-//! Final stage of a refit: adds the non-steady part of the sweeps.
+//! Last stage of a refit: with the non-steady part of the sweeps.
 
 use super::problem::Posterior;
 use super::refit::Refit;
@@ -8,38 +8,38 @@ use crate::model::Model;
 
 /// Rounds of a refit with the non-steady part of the sweeps; the second recomputes it at the result of the first.
 const ROUNDS: usize = 2;
-/// Evaluations of a round. It starts near its optimum, so a fit that is still far away then is no explanation.
-const TO_SETTLE: usize = 20;
+/// Most evaluations of a round. It starts near its optimum; a fit that needs more explains the data badly anyway.
+const EVALUATIONS: usize = 20;
 
 /// Refits with the non-steady part of the sweeps, which a search leaves out: see [`unsteady`]. Without fitted sweeps
-/// the refit stays as it is.
+/// the refit is unchanged.
 ///
 /// # Errors
 /// Fails if the model lacks a measured quantity.
-pub fn settle(model: &dyn Model, refit: Refit, evidence: &Evidence) -> Result<Refit, PredictError> {
+pub fn add_unsteady(model: &dyn Model, refit: Refit, evidence: &Evidence) -> Result<Refit, PredictError> {
     let swept = |(_, series): (usize, &Series)| matches!(evidence.runs[series.run].stimulus, Stimulus::Sweep { .. });
     if !evidence.of_role(Role::Fit).any(swept) {
         return Ok(refit);
     }
     let mut posterior = Posterior::of(&refit, model, evidence);
-    let mut settled = refit;
+    let mut refit = refit;
     for _ in 0..ROUNDS {
-        let misread = settled.nuisance.misread(evidence, &settled.coefficients);
-        posterior.known.clear();
-        posterior.unsteady = unsteady(model, &settled.values, &misread, evidence, Role::Fit)?;
-        let place = posterior.place(&settled);
-        settled = posterior.settle(place)?;
+        let conditions = refit.nuisance.conditions(evidence, &refit.coefficients);
+        posterior.cache.clear();
+        posterior.unsteady = unsteady(model, &refit.values, &conditions, evidence, Role::Fit)?;
+        let place = posterior.place(&refit);
+        refit = posterior.short_fit(place)?;
     }
-    Ok(settled)
+    Ok(refit)
 }
 
 impl Posterior<'_> {
     /// A short search, with an update of the discrepancy if there is one.
-    fn settle(&mut self, place: Vec<f64>) -> Result<Refit, PredictError> {
+    fn short_fit(&mut self, place: Vec<f64>) -> Result<Refit, PredictError> {
         if self.discrepancy.is_some() {
-            return self.fit(place, 1, TO_SETTLE);
+            return self.fit(place, 1, EVALUATIONS);
         }
-        let outcome = self.search(&place, TO_SETTLE)?;
+        let outcome = self.search(&place, EVALUATIONS)?;
         Ok(self.refit(outcome))
     }
 }
