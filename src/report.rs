@@ -1,4 +1,4 @@
-//! A report as one HTML file with its text, figures and data, which needs no network.
+//! One HTML file that holds a report: its text, its figures and its data. It opens without a network.
 
 use serde::Serialize;
 
@@ -10,7 +10,7 @@ pub mod rounded;
 
 const TEMPLATE: &str = include_str!("report/page.html");
 
-/// Plots: uPlot 1.6.32, with its licence beside it.
+/// Drawing of plots: uPlot 1.6.32, whose licence is beside it.
 const UPLOT: [&str; 2] = [
     include_str!("report/uplot/uPlot.min.css"),
     include_str!("report/uplot/uPlot.iife.min.js"),
@@ -23,7 +23,7 @@ const STYLE: [&str; 4] = [
     include_str!("report/css/print.css"),
 ];
 
-/// Scripts that all reports share, in the order in which they use each other.
+/// What every report draws with, in the order in which they use each other.
 const SCRIPTS: [&str; 15] = [
     include_str!("report/js/view.js"),
     include_str!("report/js/format.js"),
@@ -93,14 +93,14 @@ const TARGETS: [&str; 9] = [
     include_str!("report/js/target/target.js"),
 ];
 
-/// Content of a report.
+/// What a page reports.
 #[derive(Clone, Copy)]
 pub enum Report {
-    /// A study of a campaign.
+    /// A campaign, worked through by all verbs.
     Study,
-    /// A comparison of two sides.
+    /// Two sides.
     Comparison,
-    /// Targets of an axle.
+    /// What an axle must be.
     Targets,
 }
 
@@ -114,7 +114,7 @@ impl Report {
     }
 }
 
-/// A report. Its script may use a `program`, an expression of JavaScript that contains only [`inert`] texts.
+/// A report. Its script may compute with a `program`, an expression of JavaScript that [`inert`] texts alone come into.
 pub fn page(report: Report, title: &str, data: &impl Serialize, program: Option<&str>) -> String {
     let mut out = String::new();
     for part in TEMPLATE.split("{{").enumerate() {

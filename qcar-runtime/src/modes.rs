@@ -11,18 +11,18 @@ use crate::matrices::{at_rest, dense};
 use crate::model::{Matrix, Model, StateKind};
 use crate::response::parameters::Values;
 
-/// A mode.
+/// A natural vibration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
     /// Undamped natural frequency `|λ| / 2π`, Hz.
     pub frequency: f64,
     /// Damping ratio `-Re λ / |λ|`, below 1.
     pub damping: f64,
-    /// Motion of every point; the largest amplitude is 1.
+    /// The position of everything that moves in it; the largest is 1.
     pub shape: Vec<Part>,
 }
 
-/// Motion of a point in a mode.
+/// What a point does in a mode.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
     /// The mass or node.
@@ -33,29 +33,29 @@ pub struct Part {
     pub amplitude: Complex<f64>,
 }
 
-/// Frequency below which a mode counts as a rigid motion of the axle along the road, Hz.
+/// Modes below this frequency (Hz) are the axle drifting off as a whole, which nothing holds along the road.
 const RIGID: f64 = 0.01;
 
-/// Points with an amplitude below this share of the largest count as at rest.
+/// Points that move less than this share of the largest stand still.
 const STILL: f64 = 1e-6;
 
-/// The modes of a model, lowest frequency first. Eigenvalues without oscillation are left out.
+/// The vibrations of a model, lowest frequency first. What decays without vibrating is left out.
 pub fn modes(model: &(impl Model + ?Sized), values: &Values) -> Vec<Mode> {
     let a = dynamics(model, values.as_slice());
     let roots = vibrations(&a).into_iter();
     roots.map(|root| mode(model, &a, root)).collect()
 }
 
-/// Frequency (Hz) and damping ratio of each mode, without its shape.
+/// Frequency (Hz) and damping ratio of each of them, without their shapes.
 pub fn frequencies(model: &(impl Model + ?Sized), values: &Values) -> Vec<(f64, f64)> {
     let roots = vibrations(&dynamics(model, values.as_slice())).into_iter();
     roots.map(|root| (frequency(root), damping(root))).collect()
 }
 
-/// Eigenvalue of each mode with positive imaginary part, lowest frequency first.
+/// The eigenvalue of each vibration with its imaginary part above zero, lowest frequency first.
 pub(crate) fn vibrations(a: &DMatrix<f64>) -> Vec<Complex<f64>> {
     let vibrates = |root: &Complex<f64>| root.im > 1e-6 * root.norm() && root.norm() > TAU * RIGID;
-    // A model without masses has no modes, and the Schur form of a matrix with NaN would not converge.
+    // Nothing moves in a model without a mass, and what is not a number has no Schur form to wait for.
     if a.is_empty() || a.iter().any(|value| !value.is_finite()) {
         return Vec::new();
     }
@@ -73,9 +73,9 @@ fn damping(root: Complex<f64>) -> f64 {
     -root.re / root.norm()
 }
 
-/// Pairs of modes of two models that correspond, by their positions in both lists; each mode is in at most one pair.
+/// Modes of two models that are the same vibration, by their places in both lists; each mode is in one pair at most.
 ///
-/// The most similar pairs are chosen first, down to a similarity of one half.
+/// The likeliest pairs are taken first, down to one half, below which a mode is hardly the same any more.
 pub fn pairs(first: &[Mode], second: &[Mode]) -> Vec<(usize, usize)> {
     let all = (0..first.len()).flat_map(|a| (0..second.len()).map(move |b| (a, b)));
     let mut likely: Vec<_> = all.map(|(a, b)| (likeness(&first[a], &second[b]), a, b)).collect();
@@ -91,8 +91,8 @@ pub fn pairs(first: &[Mode], second: &[Mode]) -> Vec<(usize, usize)> {
 }
 
 /// The modal assurance criterion `|a·b|² / (|a|² |b|²)` over the points that both models have (Allemang, "The Modal
-/// Assurance Criterion", Sound and Vibration 37 (2003)), times the share of both modes in these points: a mode of a
-/// part that only one model has has no counterpart.
+/// Assurance Criterion", Sound and Vibration 37 (2003)), times how much of both modes these points are: a vibration of
+/// what only one model has is like none of the other.
 fn likeness(first: &Mode, second: &Mode) -> f64 {
     let shared = |one: &Part, among: &Mode| {
         let mut others = among.shape.iter();
@@ -139,7 +139,7 @@ fn mode(model: &(impl Model + ?Sized), a: &DMatrix<f64>, root: Complex<f64>) -> 
     }
 }
 
-/// The eigenvector of the smallest eigenvalue of `A - λ`, by inverse iteration with a shift.
+/// The vector that `A - λ` takes to the smallest: inverse iteration from a shifted root.
 pub(crate) fn eigenvector(a: &DMatrix<f64>, root: Complex<f64>) -> DVector<Complex<f64>> {
     const SHIFT: f64 = 1e-9;
     const STEPS: usize = 3;

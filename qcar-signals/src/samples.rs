@@ -1,8 +1,8 @@
-//! The samples of a channel in the type in which the file stores them.
+//! The samples of a channel, as narrow as the file stores them.
 
 use std::ops::Range;
 
-/// Physical values; NaN for an invalid value.
+/// Physical values; not a number where the file has no valid one.
 #[derive(Clone, Debug)]
 pub struct Samples(Stored);
 
@@ -10,7 +10,7 @@ pub struct Samples(Stored);
 enum Stored {
     Doubles(Vec<f64>),
     Singles(Vec<f32>),
-    /// Values to be multiplied by a factor.
+    /// To be taken times a factor.
     Shorts(Vec<i16>, f64),
 }
 
@@ -20,12 +20,12 @@ impl Samples {
         Samples(Stored::Singles(samples))
     }
 
-    /// Short integers, each to be multiplied by a factor.
+    /// Short integers, each of which is to be taken times a factor.
     pub(crate) fn shorts(stored: Vec<i16>, factor: f64) -> Self {
         Samples(Stored::Shorts(stored, factor))
     }
 
-    /// Number of samples.
+    /// How many there are.
     pub fn len(&self) -> usize {
         match &self.0 {
             Stored::Doubles(own) => own.len(),
@@ -34,15 +34,15 @@ impl Samples {
         }
     }
 
-    /// True without samples.
+    /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// A sample.
+    /// One of them.
     ///
     /// # Panics
-    /// If there is none at this position.
+    /// There is none at this index.
     pub fn at(&self, index: usize) -> f64 {
         match &self.0 {
             Stored::Doubles(own) => own[index],
@@ -51,26 +51,26 @@ impl Samples {
         }
     }
 
-    /// All samples.
+    /// All of them.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = f64> + ExactSizeIterator + Clone + '_ {
         self.range(0..self.len())
     }
 
-    /// The samples at these positions.
+    /// Those of these indices.
     ///
     /// # Panics
-    /// During iteration, if there is none at a position.
+    /// As it goes on, where there is none at an index.
     pub fn range(&self, of: Range<usize>) -> impl DoubleEndedIterator<Item = f64> + ExactSizeIterator + Clone + '_ {
         of.map(|index| self.at(index))
     }
 
-    /// All samples in double precision.
+    /// All of them in double precision.
     pub fn to_vec(&self) -> Vec<f64> {
         self.iter().collect()
     }
 }
 
-/// No samples.
+/// None.
 impl Default for Samples {
     fn default() -> Self {
         Vec::new().into()
@@ -89,7 +89,7 @@ impl<T: AsRef<[f64]>> PartialEq<T> for Samples {
     }
 }
 
-/// Equality of values, for any storage type.
+/// Of the values, however they are stored.
 impl PartialEq for Samples {
     fn eq(&self, other: &Self) -> bool {
         self.iter().eq(other.iter())

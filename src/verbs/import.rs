@@ -120,7 +120,7 @@ fn report(
     let mut text = String::new();
     for (file, runs) in files.iter().zip(runs) {
         text += &format!("{}: {}\n", file.file.display(), inspect::text(&file.contents));
-        text.extend(runs.iter().map(|run| format!("taken for {}\n", run.description())));
+        text.extend(runs.iter().map(|run| format!("taken for {}\n", run.said())));
         text += "\n";
     }
     text += &sensors::table(proposed);

@@ -1,4 +1,4 @@
-//! The kind of run of a file.
+//! Which kind of run a file is.
 
 use std::ops::Range;
 
@@ -14,25 +14,25 @@ use super::swept::{Swept, parts, swept};
 use crate::table::number;
 use crate::verbs::inspect::{Contents, Course};
 
-/// Significant digits of proposed values.
+/// Significant digits of what is proposed.
 const DIGITS: usize = 6;
-/// A record without a pad is that of an impact if its largest value is at least this multiple of its RMS.
+/// A record without a pad whose largest value is so many times its RMS value is one of an impact.
 const IMPACT: f64 = 5.0;
 
-/// A run and its recognised kind.
+/// A run and what it seems to be.
 pub(super) struct Proposed {
     file: String,
     kind: Kind,
-    /// Highest sample rate of its sensors, Hz.
+    /// Hz, the highest among its sensors.
     rate: Option<f64>,
-    /// The part of a recording with several runs.
+    /// Of a recording with several runs.
     part: Option<Part>,
 }
 
-/// A part of a recording that is a run of its own.
+/// A part of a recording, which is a run of its own.
 struct Part {
     name: String,
-    /// Start and end, s, on the clock of the recording.
+    /// s, on the clock of the recording.
     from: f64,
     to: f64,
 }
@@ -40,26 +40,26 @@ struct Part {
 enum Kind {
     Sweep(Swept),
     Cleat,
-    /// A K&C cycle: names of the displacement and of the force.
+    /// Of a K&C rig: the names of the displacement and of the force.
     Curve(String, String),
     TimeHistory,
-    /// A part between sweeps with another motion of the pad; it is no run.
+    /// A part between sweeps in which the pad does something else: no run.
     Other,
 }
 
 impl Part {
-    fn description(&self) -> String {
+    fn said(&self) -> String {
         format!("from {} to {} s", self.from, self.to)
     }
 }
 
 impl Proposed {
-    /// The kind as text.
-    pub fn description(&self) -> String {
+    /// In words.
+    pub fn said(&self) -> String {
         let when = self
             .part
             .as_ref()
-            .map_or_else(String::new, |part| format!(", {}", part.description()));
+            .map_or_else(String::new, |part| format!(", {}", part.said()));
         match &self.kind {
             Kind::Sweep(own) => format!(
                 "a {} sweep from {} to {} Hz at {} m/s{when}",
@@ -76,16 +76,16 @@ impl Proposed {
     }
 }
 
-/// Motion of a pad.
+/// What the samples of a pad show.
 pub(super) struct Driven {
-    /// The sweep, if the whole record is one.
+    /// The sweep that all of it is, if it is one.
     whole: Option<Swept>,
-    /// The parts in which the pad moves, with the sweep of a part that is one, and its start and end, s.
+    /// The parts in which the pad moves, each with its sweep, if it is one, and the time from which and to which it lasts, s.
     parts: Vec<(Option<Swept>, (f64, f64))>,
 }
 
 impl Driven {
-    /// Motion of a channel that seems to be a pad and has a clock.
+    /// Of a channel that is taken for a pad and has a clock.
     pub fn of(signal: &Signal, about: &About) -> Option<Self> {
         let guess = Guess::of(signal, about).ok().filter(|guess| guess.drives)?;
         let (rate, start) = (signal.time.rate()?, signal.time.start()?);
@@ -107,7 +107,7 @@ impl Driven {
     }
 }
 
-/// The runs of a file: one for each of several sweeps, otherwise one for the whole record.
+/// The runs that a file holds: of a recording with several sweeps each of them, else one of all of it.
 pub(super) fn propose(file: &Measured, sensors: &Sensors) -> Vec<Proposed> {
     let contents = &file.contents;
     let of = |drives: bool| {
@@ -143,7 +143,7 @@ pub(super) fn propose(file: &Measured, sensors: &Sensors) -> Vec<Proposed> {
     vec![proposed(kind, None)]
 }
 
-/// A file without times, with one displacement and one force.
+/// A file without times that has one displacement and one force.
 fn curve<T>(contents: &Contents<T>) -> Option<Kind> {
     let timeless = contents.channels().all(|(_, course)| course.start.is_none());
     let only = |quantity: Quantity| {
@@ -157,7 +157,7 @@ fn curve<T>(contents: &Contents<T>) -> Option<Kind> {
     Some(Kind::Curve(only(Quantity::Displacement)?, only(Quantity::Force)?))
 }
 
-/// A rate from printed times differs a little from its whole number.
+/// Printed times leave a rate a little off the whole number that it is.
 fn whole(rate: f64) -> f64 {
     if (rate / rate.round() - 1.0).abs() < 1e-6 {
         rate.round()
@@ -166,7 +166,7 @@ fn whole(rate: f64) -> f64 {
     }
 }
 
-/// The samples in SI, if the file states their unit, about their mean.
+/// The samples in SI, as far as the file says their unit, about their mean.
 fn in_units(signal: &Signal) -> Vec<f64> {
     let factor = in_si(&signal.unit).map_or(1.0, |si| si.multiply / si.divide);
     let valid = signal.samples.iter().filter(|value| value.is_finite());
@@ -186,18 +186,18 @@ fn is_impact(course: &Course) -> bool {
     values.is_some_and(|(peak, rms)| peak > IMPACT * rms)
 }
 
-/// The `[[run]]` sections. The last sweep is held out.
+/// The `[[run]]` sections. The last sweep judges the fit of the others.
 pub(super) fn sections(runs: &[&Proposed]) -> String {
     let is_record = |run: &&&Proposed| matches!(run.kind, Kind::Sweep(_) | Kind::TimeHistory);
     let sweeps = runs.iter().filter(is_record).count();
     let last = runs.iter().rposition(|run| is_record(&run));
-    let mut text = "\n# The runs. A part of a recording can be a separate run: give it a `name`, and `from` and `to` in s, or a `trigger`.\n".to_string();
+    let mut text = "\n# The runs. A part of a recording is a run of its own: give it a `name`, and `from` and `to` in s, or a `trigger`.\n".to_string();
     for (at, run) in runs.iter().enumerate() {
         if let (Kind::Other, Some(part)) = (&run.kind, &run.part) {
             text += &format!(
                 "\n# {:?} {}: the pad moves but does not sweep.\n",
                 run.file,
-                part.description()
+                part.said()
             );
             continue;
         }

@@ -1,4 +1,4 @@
-//! Reads a file channel by channel, so that only a part of the samples of a long recording is in memory.
+//! A file gone through channel by channel: of a long recording only a part of the samples is in memory at a time.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -14,21 +14,21 @@ use qcar_signals::signal::{Recording, Signal, TimeBase};
 use super::course::Course;
 use crate::failure::Failure;
 
-/// Bytes of a file whose samples are in memory at a time. A longer file is read once for each such part.
+/// Bytes of a file whose samples are in memory at a time. A file that is longer is gone through once for each such part of it.
 const AT_ONCE: u64 = 128 << 20;
 
-/// Contents of a file without samples, and the findings in the samples.
+/// What is in a file, without the samples, and what was found in those.
 pub(in crate::verbs) struct Contents<T> {
-    /// The recording, without samples and times of its signals.
+    /// Its signals have no samples and no times any more.
     pub recording: Recording,
     found: Vec<(Course, T)>,
 }
 
 impl<T> Contents<T> {
-    /// Reads a file and applies `look` to the samples of each channel.
+    /// Of a file, and of each channel also what `look` finds in its samples.
     ///
     /// # Errors
-    /// Fails if the file cannot be read.
+    /// A file that cannot be read.
     pub fn of(file: &Path, look: impl Fn(&Signal) -> T) -> Result<Self, Failure> {
         Self::in_parts(file, AT_ONCE, look)
     }
@@ -44,7 +44,7 @@ impl<T> Contents<T> {
             return Ok(Self::of_whole(read(&Wanted::All)?, &look));
         }
         let listed = read(&Wanted::These(&[]))?;
-        // A format that is read as a whole has all channels now.
+        // Of a format that is read from the first byte to the last, all is there now.
         if listed.signals.iter().any(|signal| !signal.samples.is_empty()) {
             return Ok(Self::of_whole(listed, &look));
         }
@@ -70,19 +70,19 @@ impl<T> Contents<T> {
         Contents { recording, found }
     }
 
-    /// The channels, each with its summary.
+    /// The channels, each with its course.
     pub fn channels(&self) -> impl Iterator<Item = (&Signal, &Course)> {
         let found = self.found.iter().map(|(course, _)| course);
         self.recording.signals.iter().zip(found)
     }
 
-    /// Findings in a channel of the recording.
+    /// What was found in a channel of the recording.
     pub fn found(&self, signal: &Signal) -> Option<&(Course, T)> {
         let at = self.recording.signals.iter().position(|own| ptr::eq(own, signal))?;
         self.found.get(at)
     }
 
-    /// Adds further wanted channels of a recording, and channels that turned out to be unreadable.
+    /// Adds the wanted channels of a recording that are not there yet, and what turned out to be none as its samples were read.
     fn add(&mut self, part: Recording, wanted: &Wanted, look: &impl Fn(&Signal) -> T) {
         let before = self.recording.signals.len();
         for mut signal in part.signals {
@@ -99,14 +99,14 @@ impl<T> Contents<T> {
     }
 }
 
-/// For each channel the patterns that select it and, for an array of MATLAB that was not split, its columns and rows.
+/// For each channel the patterns that mean it and, where it is an array of MATLAB that was not taken apart, its columns and rows.
 fn patterns(listed: &[Signal]) -> Vec<[String; 2]> {
     let mut left: BTreeSet<String> = listed.iter().map(Signal::full_name).collect();
     let distinct = listed.iter().map(Signal::full_name).filter(|name| left.remove(name));
     distinct.map(|name| [name.clone(), format!("{name}[*")]).collect()
 }
 
-/// Summary of a channel, whose samples are then released.
+/// What a channel holds, whose samples are given back.
 fn looked_into<T>(signal: &mut Signal, look: &impl Fn(&Signal) -> T) -> (Course, T) {
     let found = (Course::of(signal), look(signal));
     signal.samples = Samples::default();
@@ -120,9 +120,9 @@ mod tests {
 
     use super::{AT_ONCE, Contents, Signal};
 
-    /// One or two channels at a time, for every format with long files.
+    /// One channel or two at a time, of every format that may be long.
     #[test]
-    fn a_file_in_parts_gives_the_same_summary() {
+    fn a_file_in_parts_is_told_as_the_whole() {
         for name in [
             "mdf/plain_3groups.mf4",
             "mdf/special_text_invalid_bits.mf4",
@@ -139,7 +139,7 @@ mod tests {
             "table/rig_units_row_bom_crlf.csv",
         ] {
             let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("qcar-signals/tests/samples");
-            let summary = |at_once: u64| {
+            let told = |at_once: u64| {
                 let bits = |signal: &Signal| signal.samples.iter().map(f64::to_bits).collect();
                 let contents: Contents<Vec<u64>> = Contents::in_parts(&folder.join(name), at_once, bits).unwrap();
                 let found = contents.found.iter().map(|(course, samples)| {
@@ -162,7 +162,7 @@ mod tests {
                 let found: Vec<_> = found.collect();
                 (format!("{:?}", contents.recording), found)
             };
-            let (whole, parts) = (summary(AT_ONCE), summary(1));
+            let (whole, parts) = (told(AT_ONCE), told(1));
             assert_eq!(parts.0, whole.0, "{name}");
             assert_eq!(parts.1, whole.1, "{name}");
         }

@@ -1,35 +1,35 @@
-//! Summary of a channel without its samples.
+//! What is told of a channel when its samples are gone.
 
 use qcar_signals::samples::Samples;
 use qcar_signals::signal::Signal;
 
 use crate::doubt::{Does, doubt};
 
-/// Number of characters of a sparkline.
+/// Columns of a sparkline.
 const SPARKS: usize = 16;
 
-/// Range and shape of a channel, in its unit.
+/// The range and the course of a channel, in its unit.
 pub(in crate::verbs) struct Course {
-    /// Number of samples, including those without a value.
+    /// How many there are, those without a value among them.
     pub samples: usize,
-    /// Number of samples without a value.
+    /// How many have no value.
     pub missing: usize,
-    /// Sample rate, Hz; `None` if the samples are not evenly spaced.
+    /// Hz, where they come evenly.
     pub rate: Option<f64>,
-    /// Time of the first sample, s; `None` without times.
+    /// Time of the first sample, s, where the file says times.
     pub start: Option<f64>,
     pub min: Option<f64>,
     pub max: Option<f64>,
     pub mean: Option<f64>,
     pub rms: Option<f64>,
-    /// Sparkline of a few characters, from the lowest to the highest value.
+    /// A few characters, from the lowest to the highest.
     pub sparkline: String,
-    /// Doubt about its unit, as a sentence.
+    /// What is odd about its unit, as a sentence.
     pub doubt: Option<String>,
 }
 
 impl Course {
-    /// Summary of a channel with samples.
+    /// Of a channel whose samples are there.
     pub fn of(signal: &Signal) -> Self {
         let mut sums = Sums::default();
         let valid = signal.samples.iter().filter(|value| value.is_finite());
@@ -61,7 +61,7 @@ impl Course {
     }
 }
 
-/// Sums of one pass over the samples, since a long recording has a billion of them.
+/// What one pass over the samples gives; a long recording has a billion of them.
 struct Sums {
     count: usize,
     min: f64,
@@ -92,7 +92,7 @@ impl Sums {
     }
 }
 
-/// Sparkline of a channel: the means of equal parts, from the lowest to the highest.
+/// The course of a channel in a few characters: the means of as many parts, from the lowest to the highest.
 fn sparkline(samples: &Samples) -> String {
     let part = samples.len().div_ceil(SPARKS).max(1);
     let means = (0..samples.len()).step_by(part).map(|from| {
