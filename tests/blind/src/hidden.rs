@@ -136,6 +136,11 @@ law!(/// A mass on a spring and damper on the wheel.
     Resonator { m_resonator, k_resonator, c_resonator });
 
 impl Laws {
+    /// Mass that moves with the wheel itself, kg: its belt and its resonator are parts of the wheel's mass.
+    pub fn carried_by_the_wheel(&self, m_wheel: f64) -> f64 {
+        m_wheel - self.belt.map_or(0.0, |belt| belt.m_belt) - self.resonator.map_or(0.0, |own| own.m_resonator)
+    }
+
     /// The laws of a set of effects. Sensor effects are not laws; the rig applies them.
     pub fn of(effects: &[Hidden]) -> Self {
         let mut laws = Self::default();

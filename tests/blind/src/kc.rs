@@ -62,7 +62,7 @@ impl Sine {
         for i in 0..(RUN_IN / most) as usize {
             y = step(i as f64 * most - RUN_IN, &y, most, &derivative);
         }
-        let wheel = axle.m_wheel - laws.belt.map_or(0.0, |belt| belt.m_belt);
+        let wheel = laws.carried_by_the_wheel(axle.m_wheel);
         let mut rows = Vec::new();
         for i in 0..samples {
             let t = i as f64 * apart;

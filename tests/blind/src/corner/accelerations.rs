@@ -29,7 +29,7 @@ impl Corner<'_> {
             l.resonator.is_some(),
         );
         let gear = l.inertance.unwrap_or(0.0);
-        falls(WHEEL, a.m_wheel - l.belt.map_or(0.0, |b| b.m_belt), true);
+        falls(WHEEL, l.carried_by_the_wheel(a.m_wheel), true);
         if gear > 0.0 {
             self.couple_by_inerter(gear, f, g, acceleration);
         }
