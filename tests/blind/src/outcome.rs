@@ -155,8 +155,13 @@ impl Outcome {
             let Some(value) = finding["parameters"][name].as_f64() else {
                 continue;
             };
+            let stderr = finding["stderr"][name].as_f64();
+            if stderr == Some(0.0) {
+                continue;
+            }
+            let truth = truth * scale(hidden, finding, name);
             self.error = self.error.max((value / truth - 1.0).abs());
-            if let Some(error) = finding["stderr"][name].as_f64() {
+            if let Some(error) = stderr {
                 self.covered.0 += usize::from((value - truth).abs() <= 2.0 * error);
                 self.covered.1 += 1;
             }
@@ -252,6 +257,17 @@ fn list(value: &Value) -> impl Iterator<Item = &Value> {
 
 fn words(value: &Value, word: impl Fn(&Value) -> Option<String>) -> Vec<String> {
     list(value).filter_map(word).collect()
+}
+
+/// Factor of a true parameter in the terms of the answer. The pitch angle of a sub-frame has no scale of its own: an answer
+/// assumes a half length, which scales inertia and offset. It is 1 for every other parameter.
+fn scale(hidden: &Hidden, finding: &Value, name: &str) -> f64 {
+    let length = || Some(finding["parameters"]["half_length"].as_f64()? / hidden.get("half_length"));
+    match (hidden.name.as_str(), name) {
+        ("subframe_pitch", "inertia") => length().map_or(1.0, |ratio| ratio.powi(2)),
+        ("subframe_pitch", "arm_offset") => length().unwrap_or(1.0),
+        _ => 1.0,
+    }
 }
 
 fn truth(case: &Case) -> Vec<Place> {

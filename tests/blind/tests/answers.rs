@@ -55,6 +55,30 @@ fn a_full_answer_is_read() {
     assert_eq!(row(&outcome, "0.95 to 0.99"), "1 (100 %)");
 }
 
+/// An answer assumes the half length: what it scales is compared in the answer's terms, and it is not counted itself.
+#[test]
+fn a_pitch_angle_has_no_scale_of_its_own() {
+    let case = case(71, "subframe_pitch@subframe 0 seed 71");
+    let hidden = &case.order.effects[0];
+    let assumed = 0.3;
+    let ratio = assumed / hidden.get("half_length");
+    let answer = |inertia: f64| {
+        json!({
+            "verdict": "found",
+            "findings": [{
+                "effect": "subframe_pitch", "at": "subframe", "form": null,
+                "parameters": {"inertia": inertia, "half_length": assumed, "arm_offset": ratio * hidden.get("arm_offset")},
+                "stderr": {"inertia": 0.01, "half_length": 0.0, "arm_offset": 0.001},
+            }],
+        })
+    };
+    let scaled = ratio.powi(2) * hidden.get("inertia");
+    let right = outcome(&case, &answer(scaled));
+    assert_eq!(right.covered, (2, 2));
+    assert!(right.error < 1e-9, "{}", right.error);
+    assert_eq!(outcome(&case, &answer(scaled + 0.03)).covered, (1, 2));
+}
+
 #[test]
 fn a_second_name_beside_the_right_one_is_wrong() {
     let case = case(1, "coulomb_friction@damper 1 seed 1");
