@@ -1,14 +1,14 @@
-//! What one pass over the samples of a channel gives, so that they need not be kept.
+//! Statistics of a channel from one pass over its samples, which need not be kept.
 
-/// Parts of a channel whose means are kept.
+/// Number of equal parts of a channel, each with its own mean.
 const PARTS: usize = 16;
 
-/// The range and the course of a channel, in its unit. Samples without a valid value are only counted.
+/// Range, mean, RMS and shape of a channel, in its unit. Samples without a valid value are only counted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
-    /// How many samples there are.
+    /// Number of samples.
     pub samples: usize,
-    /// How many of them have a valid value.
+    /// Number of samples with a valid value.
     pub valid: usize,
     /// The lowest valid value; infinity if there is none.
     pub min: f64,
@@ -23,7 +23,7 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Of none yet of so many samples.
+    /// Empty summary of a channel that will have this number of samples.
     pub(crate) fn new(samples: usize) -> Self {
         Summary {
             samples: 0,
@@ -60,17 +60,17 @@ impl Summary {
         }
     }
 
-    /// The mean of the valid values; none if there are none.
+    /// Mean of the valid values; `None` without any.
     pub fn mean(&self) -> Option<f64> {
         self.of_valid(self.sum)
     }
 
-    /// The root mean square of the valid values; none if there are none.
+    /// Root mean square of the valid values; `None` without any.
     pub fn rms(&self) -> Option<f64> {
         self.of_valid(self.squares).map(f64::sqrt)
     }
 
-    /// The means of up to sixteen equal parts, the last of which may be shorter; not a number where a part has no valid value.
+    /// The means of up to sixteen equal parts, the last of which may be shorter; NaN for a part without a valid value.
     pub fn part_means(&self) -> impl Iterator<Item = f64> + '_ {
         self.parts.iter().map(|&(sum, valid)| sum / valid as f64)
     }

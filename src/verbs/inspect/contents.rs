@@ -1,4 +1,4 @@
-//! What is in a file: of a long recording only a part of the samples is in memory at a time.
+//! Contents of a measured file. Only a part of the samples of a long recording is in memory at a time.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -14,8 +14,8 @@ use qcar_signals::signal::{Recording, Signal, TimeBase};
 use super::course::Course;
 use crate::failure::Failure;
 
-/// Bytes of a file whose samples are in memory at a time. If channels are not summarised as the file is gone through once, a longer file is
-/// gone through once for each such part of it.
+/// Bytes of a file whose samples are in memory at a time. A longer file is read once if its format allows summaries, and otherwise once for
+/// each such part.
 const AT_ONCE: u64 = 128 << 20;
 
 /// Contents of a file without samples, and the findings in the samples.
@@ -25,19 +25,19 @@ pub(in crate::verbs) struct Contents<T> {
     found: Vec<(Course, Option<T>)>,
 }
 
-/// What is looked for in the samples of some channels.
+/// A search in the samples of some channels.
 pub(in crate::verbs) struct Look<'l, T> {
-    /// Whether a channel has it, which is asked without samples.
+    /// True for a channel whose samples are wanted; decided without samples.
     pub is_in: &'l dyn Fn(&Signal) -> bool,
-    /// Takes it from the samples, all of which are in memory.
+    /// Result of the search in a channel whose samples are all in memory.
     pub take: &'l dyn Fn(&Signal) -> Option<T>,
 }
 
 impl Contents<()> {
-    /// Of a file, whose samples are only summarised.
+    /// Reads a file and keeps only the summaries of its samples.
     ///
     /// # Errors
-    /// A file that cannot be read.
+    /// Fails if the file cannot be read.
     pub fn summary(file: &Path) -> Result<Self, Failure> {
         let nothing = Look {
             is_in: &|_| false,
@@ -48,10 +48,10 @@ impl Contents<()> {
 }
 
 impl<T> Contents<T> {
-    /// Of a file, and what is found in the samples of channels.
+    /// Reads a file and searches the samples of the wanted channels.
     ///
     /// # Errors
-    /// A file that cannot be read.
+    /// Fails if the file cannot be read.
     pub fn of(file: &Path, look: &Look<T>) -> Result<Self, Failure> {
         Self::in_parts(file, AT_ONCE, look)
     }
@@ -67,7 +67,7 @@ impl<T> Contents<T> {
             return Ok(Self::of_whole(read(&Wanted::All)?, look));
         }
         let listed = read(&Wanted::Summaries)?;
-        // Of a format that is read from the first byte to the last, all is there now.
+        // A format that can only be read as a whole has all channels now.
         if listed.signals.iter().any(|signal| !signal.samples.is_empty()) {
             return Ok(Self::of_whole(listed, look));
         }
@@ -95,7 +95,7 @@ impl<T> Contents<T> {
         Ok(contents)
     }
 
-    /// Of channels that were summarised: only those are read again in whose samples something is looked for.
+    /// Contents of summarised channels. Only channels whose samples are wanted are read again.
     fn of_summarised(
         mut recording: Recording,
         at_a_time: usize,
@@ -133,13 +133,13 @@ impl<T> Contents<T> {
         self.recording.signals.iter().zip(found)
     }
 
-    /// What was found in a channel of the recording.
+    /// Summary of a channel of the recording, and the result of the search.
     pub fn found(&self, signal: &Signal) -> Option<&(Course, Option<T>)> {
         let at = self.recording.signals.iter().position(|own| ptr::eq(own, signal))?;
         self.found.get(at)
     }
 
-    /// Adds the wanted channels of a recording that are not there yet, and what turned out to be none as its samples were read.
+    /// Adds further wanted channels of a recording, and channels that turned out to be unreadable.
     fn add(&mut self, part: Recording, wanted: &Wanted, look: &Look<T>) {
         let before = self.recording.signals.len();
         for mut signal in part.signals {
@@ -167,7 +167,7 @@ fn is_same(one: &Signal, other: &Signal) -> bool {
     one.name == other.name && one.source == other.source
 }
 
-/// What a channel holds, whose samples are given back.
+/// Summary of a channel and the result of the search; its samples are then released.
 fn looked_into<T>(signal: &mut Signal, look: &Look<T>) -> (Course, Option<T>) {
     let taken = if (look.is_in)(signal) {
         (look.take)(signal)
@@ -177,7 +177,7 @@ fn looked_into<T>(signal: &mut Signal, look: &Look<T>) -> (Course, Option<T>) {
     (given_back(signal), taken)
 }
 
-/// The course of a channel, whose samples are given back.
+/// Summary of a channel, whose samples are then released.
 fn given_back(signal: &mut Signal) -> Course {
     let course = Course::of(signal);
     signal.samples = Samples::default();

@@ -107,8 +107,8 @@ impl Nuisance {
                     .map(constant)
                     .collect()
             }
-            // A recorded input drives the model, so a calibration gain acts like a parameter change. It stays in the
-            // uncertainty of the values.
+            // A recorded input drives the model, so a calibration gain acts like a parameter change. The
+            // standard errors of the parameters leave it out.
             Kind::Time => self.suspected(&series.sensor, Form::Gain(0)).map(constant).collect(),
         }
     }

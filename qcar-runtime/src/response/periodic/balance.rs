@@ -126,8 +126,8 @@ impl<'a> Balance<'a> {
         product(&self.basis.analysis, &self.period.outputs().select_columns(outputs))
     }
 
-    /// How the coefficients of some outputs move along each group of parameters, and last along the logarithm of the
-    /// amplitude of the drive: a column for each. States that cannot be told of stay.
+    /// Derivatives of the coefficients of some outputs: a column for each group of parameters, and a last one for the
+    /// logarithm of the amplitude of the drive. Undetermined states have zero derivatives.
     pub fn slopes(&mut self, outputs: &[usize], groups: &[Vec<usize>]) -> DMatrix<f64> {
         let factors = self.factorise();
         self.period.differentiate();
