@@ -2,7 +2,7 @@
 //!
 //! Zimmermann and von Hoessle, "Computing solution spaces for robust design", Int. J. Numer. Meth. Engng 94 (2013) 290–307: a box
 //! grows to all sides, designs are drawn in it, and sides are cut off that hold bad ones while as few good ones as possible go
-//! with them; at the end it takes in whatever lies around it as long as enough designs are good. How probable a good design is in the
+//! with them; at the end it grows as long as enough designs in it are good. How probable a good design is in the
 //! box is then judged by designs that had no part in finding it.
 //!
 //! Where results are not certain, the box is found with the margins of the limits, in which all is certain, and judged by results as they
@@ -57,21 +57,25 @@ pub struct Space {
 const GROWTH: f64 = 0.08;
 /// Good designs from which cuts are tried.
 const ANCHORS: usize = 16;
-/// Largest number of rounds in which a box takes in what lies around it,
+/// Largest number of final rounds of growth. This and the other sizes of steps and rounds below are choices: they affect
+/// the time of the search and the size of the box, not whether it is confirmed.
 const FINAL_ROUNDS: usize = 8;
-/// at each end of each interval this part of its length, in so many steps.
+/// Growth of a final round at each end of each interval, relative to its length.
 const SURROUNDINGS: f64 = 0.05;
+/// Number of steps in which that growth is examined.
 const STEPS: usize = 20;
-/// Designs that confirm a box are so many times the fewest that could: the fewer they are, the more of them must be good, and the smaller is
-/// the box.
+/// Number of designs that confirm a box, relative to the smallest number that could. With fewer designs a larger share of
+/// them must be good, so the box becomes smaller.
 const CONFIRMING: usize = 8;
 /// Level of significance: a worse box would give as many good designs by chance once in twenty times.
 const BY_CHANCE: f64 = 0.05;
-/// A box that does not confirm is shrunk at both ends of each interval by this part of its length; one that does grows by the other.
+/// Shrinkage of a box that is not confirmed, at each end of each interval, relative to its length.
 const SHRINKAGE: f64 = 0.01;
+/// Growth of a confirmed box, in the same way.
 const FURTHER: f64 = 0.015;
-/// Largest number of confirmations until one succeeds, and of those after it.
+/// Largest number of boxes that are judged until one is confirmed.
 const CONFIRMATIONS: usize = 16;
+/// Largest number of larger boxes that are judged after that.
 const FURTHER_ONES: usize = 4;
 
 /// A box in places of the knobs.
