@@ -73,7 +73,9 @@ const SECONDS: f64 = 4.0;
 const LEVELS: [f64; 2] = [0.5, 1.5];
 /// Standard deviation of the noise of accelerometers, m/s².
 const NOISE: f64 = 0.05;
-/// Noise is drawn so often.
+/// Standard deviation of a sensor's gain error: the calibration that the fit assumes (`SENSOR` in `discover/noise/calibration.rs`).
+const GAIN: f64 = 0.007;
+/// Noise and gain errors are drawn so often.
 const DRAWS: u64 = 6;
 
 /// Stretch and its rate.
@@ -312,7 +314,7 @@ fn curve(speed: f64) -> f64 {
     }
 }
 
-/// Writes the records with noise of their own for each draw.
+/// Writes the records with noise and gain errors of their own for each draw. A sensor has one gain in both records.
 fn campaign(folder: &Path, records: &[Vec<[f64; 4]>], draw: u64) {
     const CHANNELS: [(&str, &str, &str); 4] = [
         ("pad", "displacement", "m"),
@@ -340,6 +342,7 @@ fn campaign(folder: &Path, records: &[Vec<[f64; 4]>], draw: u64) {
         );
     }
     let mut normal = normals(draw);
+    let gains: [f64; 4] = array::from_fn(|_| (GAIN * normal()).exp());
     for (place, record) in records.iter().enumerate() {
         let file = format!("run_{place}.csv");
         let _ = write!(
@@ -347,7 +350,8 @@ fn campaign(folder: &Path, records: &[Vec<[f64; 4]>], draw: u64) {
             "[[run]]\nkind = \"time_history\"\nfile = \"{file}\"\nrole = \"fit\"\nsample_rate = {RATE}\nband_limited = true\n\n"
         );
         let mut table = String::from("time,pad,body,wheel,engine\n");
-        for (sample, [pad, accelerations @ ..]) in record.iter().enumerate() {
+        for (sample, own) in record.iter().enumerate() {
+            let [pad, accelerations @ ..]: [f64; 4] = array::from_fn(|k| gains[k] * own[k]);
             let [body, wheel, engine] = accelerations.map(|own| own + NOISE * normal());
             let _ = writeln!(table, "{},{pad},{body},{wheel},{engine}", sample as f64 / RATE);
         }

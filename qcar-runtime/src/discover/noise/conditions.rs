@@ -8,20 +8,25 @@ use nalgebra::Complex;
 use super::calibration::Form;
 use super::nuisance::{InitialState, Nuisance};
 use crate::discover::observe::{Evidence, Kind, Prediction, Run, Series, Stimulus, TestConditions};
+use crate::transmissibility::Point;
 
 impl Nuisance {
     /// Test conditions for these nuisance coefficients: the delay of each series against the excitation, the drive
-    /// factor of each run, and the initial states of each record. The phase that a delay adds to a harmonic is part of
-    /// [`Self::sensor_output`] instead. The drive factor is the inverse gain of the reference sensor; it changes only
-    /// the predictions of a nonlinear model.
+    /// factors of each run, and the initial states of each record. The phase that a delay adds to a harmonic is part of
+    /// [`Self::sensor_output`] instead. A drive factor is the inverse gain of a reference sensor. It does not change the
+    /// transmissibilities of a linear model.
     pub fn conditions(&self, evidence: &Evidence, coefficients: &[f64]) -> TestConditions {
         let delay = |series: &Series| {
             let delays = self.delay_factors(evidence, series).into_iter();
             delays.map(|(k, factor)| factor * coefficients[k]).sum()
         };
-        let drive = |run: &Run| {
-            let gains = self.reference_gains(run);
+        let factor = |run: &Run, reference: &Point| {
+            let gains = self.drive_gains(run, reference);
             (-gains.map(|k| coefficients[k]).sum::<f64>()).exp()
+        };
+        let drive = |run: &Run| {
+            let references = run.stimulus.references().into_iter();
+            references.map(|reference| factor(run, reference)).collect()
         };
         let initial_states = |run: &Run| {
             let own = self.initial_states_of(run);
@@ -46,9 +51,9 @@ impl Nuisance {
                 .find(|(state, _)| *state == own.state);
             slopes.extend(slope.map(|(_, slope)| (k, slope.clone())));
         }
-        if let Some(by_drive) = &prediction.by_drive {
+        for (reference, by_drive) in run.stimulus.references().into_iter().zip(&prediction.by_drive) {
             let along = |k| (k, by_drive.iter().map(|slope| -slope).collect());
-            slopes.extend(self.reference_gains(run).map(along));
+            slopes.extend(self.drive_gains(run, reference).map(along));
         }
         slopes
     }
@@ -61,13 +66,12 @@ impl Nuisance {
             .map(move |(k, own)| (first + k, own))
     }
 
-    /// Positions of the mean gain coefficients of a run's reference.
-    fn reference_gains(&self, run: &Run) -> impl Iterator<Item = usize> {
-        let of = |sensor| {
-            let own = self.coefficient(sensor, Form::Gain(0));
-            own.into_iter().chain(self.suspected(sensor, Form::Gain(0)))
-        };
-        run.stimulus.reference().into_iter().flat_map(of)
+    /// Positions of the coefficients that set the true amplitude of an excitation. A suspected gain of a recorded input is
+    /// left out: beyond its calibration, the gain of an input is an effect of the model (`input_gain`).
+    fn drive_gains(&self, run: &Run, reference: &Point) -> impl Iterator<Item = usize> {
+        let is_record = matches!(run.stimulus, Stimulus::History { .. });
+        let suspects = self.suspected(reference, Form::Gain(0)).filter(move |_| !is_record);
+        self.coefficient(reference, Form::Gain(0)).into_iter().chain(suspects)
     }
 
     /// Derivatives of a prediction by the delay coefficients, each with the position of its coefficient.

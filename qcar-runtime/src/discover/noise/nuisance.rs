@@ -58,7 +58,7 @@ pub struct Suspect {
 impl Nuisance {
     /// The calibration errors of each sensor of the evidence.
     pub fn of(evidence: &Evidence) -> Self {
-        let references = evidence.runs.iter().filter_map(|run| run.stimulus.reference());
+        let references = evidence.runs.iter().flat_map(|run| run.stimulus.references());
         let mut sensors: Vec<Point> = references
             .chain(evidence.series.iter().map(|s| &s.sensor))
             .cloned()
@@ -153,6 +153,12 @@ impl Nuisance {
         let place = self.sensors.iter().position(|s| s == sensor)?;
         let shape = SENSOR.iter().position(|shape| shape.form == form)?;
         Some(place * SENSOR.len() + shape)
+    }
+
+    /// Positions of the coefficients of a sensor's mean gain: that of its calibration and those of suspects.
+    pub(super) fn mean_gains(&self, sensor: &Point) -> impl Iterator<Item = usize> {
+        let own = self.coefficient(sensor, Form::Gain(0)).into_iter();
+        own.chain(self.suspected(sensor, Form::Gain(0)))
     }
 
     /// Positions of the coefficients of suspects of this form that contain the sensor.

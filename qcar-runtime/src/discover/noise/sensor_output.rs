@@ -95,21 +95,18 @@ impl Nuisance {
         match series.kind {
             Kind::Harmonic(order) => {
                 let mut slopes = self.of_sensor(&series.sensor, series, 1.0, order as f64);
-                let reference = evidence.runs[series.run].stimulus.reference();
-                slopes.extend(reference.map_or_else(Vec::new, |point| self.of_sensor(point, series, -1.0, 1.0)));
+                let references = evidence.runs[series.run].stimulus.references();
+                slopes.extend(
+                    references
+                        .into_iter()
+                        .flat_map(|point| self.of_sensor(point, series, -1.0, 1.0)),
+                );
                 slopes
             }
             // Over a wide band only the mean gain matters.
-            Kind::Passage | Kind::Travel | Kind::Width | Kind::Speed | Kind::Cycle(_) => {
-                let own = self.coefficient(&series.sensor, Form::Gain(0));
-                own.into_iter()
-                    .chain(self.suspected(&series.sensor, Form::Gain(0)))
-                    .map(constant)
-                    .collect()
+            Kind::Time | Kind::Passage | Kind::Travel | Kind::Width | Kind::Speed | Kind::Cycle(_) => {
+                self.mean_gains(&series.sensor).map(constant).collect()
             }
-            // A recorded input drives the model, so a calibration gain acts like a parameter change. The
-            // standard errors of the parameters leave it out.
-            Kind::Time => self.suspected(&series.sensor, Form::Gain(0)).map(constant).collect(),
         }
     }
 

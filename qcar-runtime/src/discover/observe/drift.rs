@@ -100,7 +100,6 @@ fn blended(of_times: &[&Prediction], weights: &[(usize, f64)]) -> Prediction {
         slope: blend(&|p| p.delay.as_ref().map_or_else(Vec::new, |own| own.slope.clone())),
         shares: own.shares.clone(),
     });
-    let has_drive = first.by_drive.is_some();
     Prediction {
         series: first.series,
         value: blend(&|p| p.value.clone()),
@@ -108,7 +107,9 @@ fn blended(of_times: &[&Prediction], weights: &[(usize, f64)]) -> Prediction {
             .map(|k| blend(&|p| p.slopes[k].clone()))
             .collect(),
         delay,
-        by_drive: has_drive.then(|| blend(&|p| p.by_drive.clone().unwrap_or_default())),
+        by_drive: (0..first.by_drive.len())
+            .map(|k| blend(&|p| p.by_drive[k].clone()))
+            .collect(),
         by_initial_states: (0..first.by_initial_states.len())
             .map(|k| {
                 (

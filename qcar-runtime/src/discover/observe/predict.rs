@@ -111,7 +111,7 @@ fn at_constant_parameters(
     let delays = &conditions.delays;
     match &evidence.runs[run].stimulus {
         Stimulus::Sweep { .. } if model.about().linear => sweep::linear(model, values, free, evidence, run),
-        Stimulus::Sweep { .. } => sweep::nonlinear(model, values, conditions.drive_of(run), free, evidence, run),
+        Stimulus::Sweep { .. } => sweep::nonlinear(model, values, conditions.drive_of(run, 0), free, evidence, run),
         Stimulus::Cleat(passage) => cleat::passage(model, side, delays, free, evidence, (run, passage)),
         Stimulus::History { .. } => {
             time_history::history(model, values, conditions, (free, !free.is_empty()), evidence, run)

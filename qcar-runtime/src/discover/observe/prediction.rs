@@ -20,6 +20,22 @@ pub struct Free {
     pub upper: f64,
 }
 
+impl Free {
+    /// Change of the parameter for a finite difference: this part of its value, or near zero of a hundredth of its range.
+    /// Negative where the upper bound is closer than that.
+    pub(super) fn change(&self, value: f64, part: f64) -> f64 {
+        const OF_RANGE: f64 = 1e-2;
+        // A positive range may span many decades, so its width is no measure of the parameter.
+        let typical = if self.lower > 0.0 {
+            self.lower.sqrt() * self.upper.sqrt()
+        } else {
+            (self.upper - self.lower).min(f64::MAX)
+        };
+        let change = part * value.abs().max(OF_RANGE * typical);
+        if value + change > self.upper { -change } else { change }
+    }
+}
+
 /// Prediction of one series.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prediction {
@@ -31,8 +47,10 @@ pub struct Prediction {
     pub slopes: Vec<Vec<Complex<f64>>>,
     /// Effect of sensor delays on values over time; `None` if a delay changes only their phase, or nothing.
     pub delay: Option<Delay>,
-    /// Derivatives of the values by the log amplitude of the excitation; `None` if the values do not depend on it.
-    pub by_drive: Option<Vec<Complex<f64>>>,
+    /// Derivatives of the values by the log amplitude of each recorded excitation, in the order of
+    /// [`Stimulus::references`](super::Stimulus::references). Empty if the values do not depend on it, and without
+    /// derivatives.
+    pub by_drive: Vec<Vec<Complex<f64>>>,
     /// Derivatives of the values by the initial states of a record, by name. Empty for other runs and without
     /// derivatives.
     pub by_initial_states: Vec<(String, Vec<Complex<f64>>)>,
@@ -43,8 +61,8 @@ pub struct Prediction {
 pub struct TestConditions {
     /// Delay of the sensor of each series, s; missing entries are zero.
     pub delays: Vec<f64>,
-    /// Factor of the true excitation of each run on that of its reference sensor; missing entries are 1.
-    pub drive: Vec<f64>,
+    /// For each run, the factor of each true excitation on that of its reference sensor; missing entries are 1.
+    pub drive: Vec<Vec<f64>>,
     /// For each run, states with their deviations from the sensor reading at the first sample, or from rest without a
     /// sensor, SI; missing entries are zero.
     pub initial_states: Vec<Vec<(String, f64)>>,
@@ -55,8 +73,13 @@ impl TestConditions {
         self.initial_states.get(run).map_or(&[], Vec::as_slice)
     }
 
-    pub(super) fn drive_of(&self, run: usize) -> f64 {
-        self.drive.get(run).copied().unwrap_or(1.0)
+    /// Factor of the `reference`-th excitation of a run.
+    pub(super) fn drive_of(&self, run: usize, reference: usize) -> f64 {
+        let factors = self.drive.get(run);
+        factors
+            .and_then(|factors| factors.get(reference))
+            .copied()
+            .unwrap_or(1.0)
     }
 }
 

@@ -151,12 +151,15 @@ impl Stimulus {
         }
     }
 
-    /// Reference sensor of the run; `None` for a road, a K&C or dynamometer test, and a free decay.
-    pub fn reference(&self) -> Option<&Point> {
+    /// Sensors that record the excitation: one of a sweep, one for each input of a history. None for a road, a K&C or
+    /// dynamometer test, and a free decay.
+    pub fn references(&self) -> Vec<&Point> {
         match self {
-            Stimulus::Sweep { reference, .. } => Some(reference),
-            Stimulus::History { inputs, .. } => inputs.signals.first().map(|(sensor, _)| sensor),
-            Stimulus::Cleat(_) | Stimulus::Travel { .. } | Stimulus::Sine { .. } | Stimulus::Dynamometer { .. } => None,
+            Stimulus::Sweep { reference, .. } => vec![reference],
+            Stimulus::History { inputs, .. } => inputs.signals.iter().map(|(sensor, _)| sensor).collect(),
+            Stimulus::Cleat(_) | Stimulus::Travel { .. } | Stimulus::Sine { .. } | Stimulus::Dynamometer { .. } => {
+                Vec::new()
+            }
         }
     }
 }

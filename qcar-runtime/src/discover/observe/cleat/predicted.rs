@@ -19,8 +19,6 @@ const METHOD: Method = Method::Adaptive(3e-6);
 /// Parameter change for a finite difference, relative to its value: large enough against the integration error, and
 /// small enough for the curvature.
 const DIFFERENCE: f64 = 3e-3;
-/// Share of the range that replaces the value of a parameter near zero.
-const PART_OF_RANGE: f64 = 1e-2;
 /// Gauss-Newton steps for the shift; the first one achieves nearly all.
 const STEPS: usize = 4;
 
@@ -42,7 +40,10 @@ pub fn passage(
     for (_, series) in &series {
         outputs.push(output_of(model.about(), &signal_of(model.about(), &series.sensor))?.0);
     }
-    let changes: Vec<f64> = free.iter().map(|free| change(values, free)).collect();
+    let changes: Vec<f64> = free
+        .iter()
+        .map(|free| free.change(values.as_slice()[free.parameter], DIFFERENCE))
+        .collect();
     let moved = free.iter().zip(&changes).map(|(free, change)| {
         let mut moved = values.clone();
         moved.set(free.parameter, values.as_slice()[free.parameter] + change);
@@ -65,13 +66,6 @@ pub fn passage(
         series: series.into_iter().map(|(_, series)| series).collect(),
     };
     Ok(measured.predictions(&base, &slopes))
-}
-
-/// Parameter change for a finite difference; negative at the upper bound.
-fn change(values: &Values, free: &Free) -> f64 {
-    let value = values.as_slice()[free.parameter];
-    let change = DIFFERENCE * value.abs().max(PART_OF_RANGE * (free.upper - free.lower).min(f64::MAX));
-    if value + change > free.upper { -change } else { change }
 }
 
 /// Car and drive of a passage.
@@ -176,7 +170,7 @@ impl Measured<'_> {
                 slope: complex(&here[column].1),
                 shares: shares.clone(),
             }),
-            by_drive: None,
+            by_drive: Vec::new(),
             by_initial_states: Vec::new(),
         };
         self.places.iter().enumerate().map(predict).collect()

@@ -55,7 +55,7 @@ pub fn forces(
             value: read.iter().map(|own| Complex::from(own.force)).collect(),
             slopes: (0..free.len()).map(slope).collect(),
             delay: None,
-            by_drive: None,
+            by_drive: Vec::new(),
             by_initial_states: Vec::new(),
         }
     };

@@ -11,8 +11,6 @@ use crate::response::parameters::Values;
 
 /// Parameter change for a finite difference, relative to its value.
 const DIFFERENCE: f64 = 1e-5;
-/// Share of the range that replaces the value of a parameter near zero.
-const PART_OF_RANGE: f64 = 1e-3;
 /// Speed of a slow cycle, m/s: low enough for damper forces below one newton.
 const SLOW: f64 = 1e-4;
 /// Time step if the wheel does not move, s.
@@ -59,7 +57,7 @@ pub fn travel(
             slopes: forces[1..].iter().zip(&steps).map(slope).collect(),
             value,
             delay: None,
-            by_drive: None,
+            by_drive: Vec::new(),
             by_initial_states: Vec::new(),
         }
     };
@@ -69,7 +67,7 @@ pub fn travel(
 /// The parameters with a free one changed, and the change.
 fn moved(values: &Values, free: &Free) -> (Vec<f64>, f64) {
     let at = values.as_slice()[free.parameter];
-    let step = DIFFERENCE * at.abs().max(PART_OF_RANGE * (free.upper - free.lower).min(f64::MAX));
+    let step = free.change(at, DIFFERENCE);
     let mut moved = values.clone();
     moved.set(free.parameter, at + step);
     (moved.as_slice().to_vec(), step)

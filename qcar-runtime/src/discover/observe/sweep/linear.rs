@@ -43,7 +43,7 @@ pub fn sweep(
             slopes: free.iter().map(slope).collect(),
             value: ratio.value,
             delay: None,
-            by_drive: None,
+            by_drive: Vec::new(),
             by_initial_states: Vec::new(),
         });
     }
@@ -57,7 +57,7 @@ fn zero_response(series: usize, values: usize, free: usize) -> Prediction {
         slopes: vec![zero.clone(); free],
         value: zero,
         delay: None,
-        by_drive: None,
+        by_drive: Vec::new(),
         by_initial_states: Vec::new(),
     }
 }

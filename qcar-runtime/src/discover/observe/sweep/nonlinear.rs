@@ -105,7 +105,11 @@ impl Reading<'_> {
         Prediction {
             series: self.place,
             value: places.iter().map(value).collect(),
-            by_drive: (free > 0).then(|| places.iter().map(by_drive).collect()),
+            by_drive: if free > 0 {
+                vec![places.iter().map(by_drive).collect()]
+            } else {
+                Vec::new()
+            },
             by_initial_states: Vec::new(),
             slopes: (0..free).map(slope).collect(),
             delay: None,

@@ -47,7 +47,7 @@ pub fn unsteady(
         .collect();
     let of_runs = runs
         .into_par_iter()
-        .map(|run| of_run(model, values, conditions.drive_of(run), evidence, run));
+        .map(|run| of_run(model, values, conditions.drive_of(run, 0), evidence, run));
     for (series, differences) in of_runs.collect::<Result<Vec<_>, _>>()?.into_iter().flatten() {
         added[series] = differences;
     }

@@ -1,10 +1,12 @@
 //! Predicts time histories: recorded inputs drive the model, and its sensors are read at the recorded times.
 
+use std::borrow::Cow;
+
 use nalgebra::Complex;
 
 use crate::discover::observe::{
-    Delay, Evidence, Free, PredictError, Prediction, Series, Spread, Stimulus, TestConditions, excitation_of, measures,
-    order_of, signal_of,
+    Delay, Evidence, Free, PredictError, Prediction, Recordings, Series, Spread, Stimulus, TestConditions,
+    excitation_of, measures, order_of, signal_of,
 };
 use crate::model::{About, Model};
 use crate::response::parameters::Values;
@@ -16,12 +18,13 @@ use crate::transmissibility::Point;
 /// Parameter change for a finite difference, relative to its value: about the square root of the rounding error of a
 /// replay.
 const DIFFERENCE: f64 = 1e-5;
-/// Share of the range that replaces the value of a parameter near zero.
-const PART_OF_RANGE: f64 = 1e-3;
+/// Change of the log amplitude of an input for a finite difference.
+const LOUDER: f64 = 1e-5;
 /// Change of an initial state for a finite difference, relative to its prior standard deviation.
 const OF_SPREAD: f64 = 1e-4;
 
-/// Predicts the sensors of a run with derivatives by the `free` parameters and, if `by_states` is true, by the initial states.
+/// Predicts the sensors of a run with derivatives by the `free` parameters, by the amplitudes of its inputs unless `free`
+/// is empty, and by the initial states if `by_states` is true.
 pub fn history(
     model: &dyn Model,
     values: &Values,
@@ -30,92 +33,127 @@ pub fn history(
     evidence: &Evidence,
     run: usize,
 ) -> Result<Vec<Prediction>, PredictError> {
-    let stimulus = &evidence.runs[run].stimulus;
     let Stimulus::History {
         inputs, rate, spread, ..
-    } = stimulus
+    } = &evidence.runs[run].stimulus
     else {
         return Ok(Vec::new());
     };
-    let series: Vec<_> = evidence
-        .series
+    let (about, p) = (model.about(), values.as_slice());
+    let of_run = |(_, series): &(usize, &Series)| series.run == run;
+    let (places, series): (Vec<_>, Vec<_>) = evidence.series.iter().enumerate().filter(of_run).unzip();
+    let sensors: Vec<_> = series.iter().map(|series| &series.sensor).collect();
+    let samples = driven(inputs, conditions, run);
+    let replay = prepare(model, evidence, run, &sensors, &samples)?;
+    let deviations = deviations(about, conditions.initial_states_of(run));
+    let base = replay.run(p, &deviations);
+    let steps: Vec<f64> = free
         .iter()
-        .enumerate()
-        .filter(|(_, series)| series.run == run)
+        .map(|free| free.change(p[free.parameter], DIFFERENCE))
         .collect();
-    let replay = prepare(
-        model,
-        evidence,
-        run,
-        &series.iter().map(|(_, s)| &s.sensor).collect::<Vec<_>>(),
-    )?;
-    let start = inputs.start;
-    let (p, deviations) = (
-        values.as_slice(),
-        deviations(model.about(), conditions.initial_states_of(run)),
-    );
-    let base = &replay.run(p, &deviations);
-    let difference = |free: &Free| DIFFERENCE * p[free.parameter].abs().max(PART_OF_RANGE * (free.upper - free.lower));
-    let steps: Vec<f64> = free.iter().map(difference).collect();
     let moved = |(free, step): (&Free, &f64)| {
         let mut values = values.clone();
         values.set(free.parameter, p[free.parameter] + step);
         values.as_slice().to_vec()
     };
-    let others = replay.like(
-        base,
-        &free.iter().zip(&steps).map(moved).collect::<Vec<_>>(),
-        &deviations,
-    );
-    // Each state with its step for a finite difference.
-    let states: Vec<(usize, f64)> = if by_states {
-        let states = unknown(model.about(), spread).into_iter();
-        states.map(|(state, sigma)| (state, OF_SPREAD * sigma)).collect()
-    } else {
-        Vec::new()
+    let moved: Vec<_> = free.iter().zip(&steps).map(moved).collect();
+    let by_parameter = replay.like(&base, &moved, &deviations);
+    let mut louder = Vec::new();
+    for input in 0..if free.is_empty() { 0 } else { samples.len() } {
+        let samples = with_louder(&samples, input);
+        let replay = prepare(model, evidence, run, &sensors, &samples)?;
+        louder.extend(replay.like(&base, &[p.to_vec()], &deviations));
+    }
+    let states = if by_states { unknown(about, spread) } else { Vec::new() };
+    let state_steps: Vec<_> = states.iter().map(|&(k, sigma)| (k, OF_SPREAD * sigma)).collect();
+    let replays = Replays {
+        by_parameter: steps.into_iter().zip(by_parameter).collect(),
+        by_drive: louder.into_iter().map(|signals| (LOUDER, signals)).collect(),
+        by_initial_states: states
+            .iter()
+            .map(|&(state, _)| about.states[state].name.to_string())
+            .zip(replay.by_initial_states(&base, p, &deviations, &state_steps))
+            .collect(),
+        base: base.signals,
     };
-    let of_states = replay.by_initial_states(base, p, &deviations, &states);
-    let shown = |signals: &[Vec<f64>], column: usize| stimulus.of_band(&signals[column]);
-    let predict = |(column, (place, series)): (usize, &(usize, &Series))| {
-        let delay = conditions.delays.get(*place).copied().unwrap_or(0.0);
-        let read = |signal: &[f64]| -> (Vec<f64>, Vec<f64>) {
-            series
-                .at
-                .iter()
-                .map(|t| between(signal, (t - start - delay) * rate))
-                .unzip()
+    let predict = |(column, (&place, series)): (usize, (&usize, &&Series))| {
+        let delay = conditions.delays.get(place).copied().unwrap_or(0.0);
+        let at = series.at.iter().map(|t| (t - inputs.start - delay) * rate).collect();
+        let reader = Reader {
+            stimulus: &evidence.runs[run].stimulus,
+            at,
+            column,
         };
-        let (value, by_sample) = read(&shown(&base.signals, column));
-        let slope = |step: f64, signals: &[Vec<f64>]| -> Vec<Complex<f64>> {
-            let (moved, _) = read(&shown(signals, column));
-            moved
-                .iter()
-                .zip(&value)
+        replays.prediction(place, &reader, *rate)
+    };
+    Ok(places.iter().zip(&series).enumerate().map(predict).collect())
+}
+
+/// Samples of the inputs, of which one is louder by [`LOUDER`].
+fn with_louder<'a>(samples: &[Cow<'a, [f64]>], input: usize) -> Vec<Cow<'a, [f64]>> {
+    let mut samples = samples.to_vec();
+    let own = samples[input].to_mut().iter_mut();
+    own.for_each(|sample| *sample *= 1.0 + LOUDER);
+    samples
+}
+
+/// Samples of the sensors of a run.
+type Signals = Vec<Vec<f64>>;
+
+/// Replays of a run at the parameters and beside them.
+struct Replays {
+    base: Signals,
+    /// For each free parameter, its step and the signals after it.
+    by_parameter: Vec<(f64, Signals)>,
+    /// For each input, the step of its log amplitude and the signals after it.
+    by_drive: Vec<(f64, Signals)>,
+    /// For each unknown initial state, its name and the derivatives of the signals.
+    by_initial_states: Vec<(String, Signals)>,
+}
+
+impl Replays {
+    fn prediction(&self, series: usize, reader: &Reader, rate: f64) -> Prediction {
+        let (value, by_sample) = reader.read(&self.base);
+        let slope = |(step, signals): &(f64, Signals)| -> Vec<Complex<f64>> {
+            let (moved, _) = reader.read(signals);
+            let pairs = moved.iter().zip(&value);
+            pairs
                 .map(|(moved, value)| Complex::from((moved - value) / step))
                 .collect()
         };
-        let along = |signals: &[Vec<f64>]| -> Vec<Complex<f64>> {
-            let (slope, _) = read(&shown(signals, column));
-            slope.into_iter().map(Complex::from).collect()
+        let along = |(name, signals): &(String, Signals)| {
+            let (slope, _) = reader.read(signals);
+            (name.clone(), slope.into_iter().map(Complex::from).collect())
         };
-        let name = |state: usize| model.about().states[state].name.to_string();
         Prediction {
-            series: *place,
-            slopes: steps.iter().zip(&others).map(|(step, own)| slope(*step, own)).collect(),
-            by_initial_states: states
-                .iter()
-                .zip(&of_states)
-                .map(|(&(state, _), own)| (name(state), along(own)))
-                .collect(),
-            value: value.iter().map(|&value| Complex::from(value)).collect(),
+            series,
+            slopes: self.by_parameter.iter().map(slope).collect(),
+            by_drive: self.by_drive.iter().map(slope).collect(),
+            by_initial_states: self.by_initial_states.iter().map(along).collect(),
             delay: Some(Delay {
                 slope: by_sample.iter().map(|slope| Complex::from(-slope * rate)).collect(),
                 shares: Vec::new(),
             }),
-            by_drive: None,
+            value: value.into_iter().map(Complex::from).collect(),
         }
-    };
-    Ok(series.iter().enumerate().map(predict).collect())
+    }
+}
+
+/// Reads the compared part of one sensor.
+struct Reader<'a> {
+    stimulus: &'a Stimulus,
+    /// Fractional samples at which it is read.
+    at: Vec<f64>,
+    /// Position of the sensor among the signals.
+    column: usize,
+}
+
+impl Reader<'_> {
+    /// The values and their derivatives by the sample.
+    fn read(&self, signals: &[Vec<f64>]) -> (Vec<f64>, Vec<f64>) {
+        let signal = self.stimulus.of_band(&signals[self.column]);
+        self.at.iter().map(|&place| between(&signal, place)).unzip()
+    }
 }
 
 /// Sample-by-sample signals of the sensors of a run, filtered by the compared band.
@@ -127,7 +165,11 @@ pub fn replayed(
     run: usize,
 ) -> Result<Vec<(Point, Vec<f64>)>, PredictError> {
     let sensors = evidence.sensors(run);
-    let replay = prepare(model, evidence, run, &sensors)?;
+    let Stimulus::History { inputs, .. } = &evidence.runs[run].stimulus else {
+        return Ok(Vec::new());
+    };
+    let samples = driven(inputs, conditions, run);
+    let replay = prepare(model, evidence, run, &sensors, &samples)?;
     let deviations = deviations(model.about(), conditions.initial_states_of(run));
     let signals = replay.run(values.as_slice(), &deviations).signals;
     let stimulus = &evidence.runs[run].stimulus;
@@ -153,12 +195,26 @@ fn between(signal: &[f64], place: f64) -> (f64, f64) {
     (value, (slope + t * (2.0 * curvature + 3.0 * t * twist)) / 2.0)
 }
 
-/// Prepares the replay of a run for some sensors.
+/// True samples of each input of a run, under these test conditions.
+fn driven<'a>(inputs: &'a Recordings, conditions: &TestConditions, run: usize) -> Vec<Cow<'a, [f64]>> {
+    let of = |(input, (_, samples)): (usize, &'a (Point, Vec<f64>))| {
+        let factor = conditions.drive_of(run, input);
+        if factor == 1.0 {
+            Cow::Borrowed(samples.as_slice())
+        } else {
+            samples.iter().map(|sample| factor * sample).collect()
+        }
+    };
+    inputs.signals.iter().enumerate().map(of).collect()
+}
+
+/// Prepares the replay of a run for some sensors, with these samples of its inputs.
 fn prepare<'a>(
     model: &'a dyn Model,
-    evidence: &'a Evidence,
+    evidence: &Evidence,
     run: usize,
     sensors: &[&Point],
+    samples: &'a [Cow<'a, [f64]>],
 ) -> Result<Replay<'a>, PredictError> {
     let about = model.about();
     let Stimulus::History {
@@ -173,7 +229,7 @@ fn prepare<'a>(
         return Err(PredictError::no_input(about, &evidence.runs[run], "record"));
     };
     let mut recorded = Vec::new();
-    for (point, samples) in &inputs.signals {
+    for ((point, _), samples) in inputs.signals.iter().zip(samples) {
         let excitation = excitation_of(about, point)
             .ok_or_else(|| PredictError::no_input(about, &evidence.runs[run], &point.location))?;
         recorded.push(Recorded {
