@@ -5,7 +5,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use qcar_dsl::diagnostic::Report;
-use qcar_dsl::disk::{FromDisk, compile_file};
+use qcar_dsl::disk::{CompiledFile, compile_file};
 use qcar_dsl::patch::Patch;
 use qcar_dsl::rust::{module, type_name};
 use qcar_dsl::source::Source;
@@ -44,19 +44,19 @@ fn files(folder: &str) -> Vec<PathBuf> {
 /// A model's module and its entry in the list; mistakes go to cargo.
 fn compile(file: &Path) -> Option<(String, String)> {
     let path = file.display().to_string();
-    let from_disk = match compile_file(Path::new(""), &path) {
-        Ok(from_disk) => from_disk,
+    let compiled_file = match compile_file(Path::new(""), &path) {
+        Ok(compiled_file) => compiled_file,
         Err(reason) => {
             println!("cargo::error={path}: {reason}");
             return None;
         }
     };
-    from_disk
+    compiled_file
         .read
         .iter()
         .for_each(|read| println!("cargo::rerun-if-changed={}", read.source.name));
-    match &from_disk.compiled {
-        Ok(compiled) => Some((module(compiled), entry(&compiled.about.name, &from_disk))),
+    match &compiled_file.compiled {
+        Ok(compiled) => Some((module(compiled), entry(&compiled.about.name, &compiled_file))),
         Err(report) => {
             refuse(report);
             None
@@ -65,8 +65,8 @@ fn compile(file: &Path) -> Option<(String, String)> {
 }
 
 /// `Shipped { … }`: the module's type, and the texts that it comes from.
-fn entry(name: &str, from_disk: &FromDisk) -> String {
-    let mut texts = from_disk
+fn entry(name: &str, compiled_file: &CompiledFile) -> String {
+    let mut texts = compiled_file
         .read
         .iter()
         .map(|read| (&read.written, included(&read.source.name)));

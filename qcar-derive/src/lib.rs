@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use proc_macro2::TokenStream;
 use qcar_dsl::compile::compile_tokens;
-use qcar_dsl::disk::{Files, Read, compile_file};
+use qcar_dsl::disk::{Files, LoadedFile, compile_file};
 use qcar_dsl::rust::module;
 use quote::{quote, quote_spanned};
 use syn::{LitStr, parse_macro_input};
@@ -52,8 +52,8 @@ pub fn axle_file(tokens: proc_macro::TokenStream) -> proc_macro::TokenStream {
     let literal = parse_macro_input!(tokens as LitStr);
     let path = literal.value();
     let error = |message: String| quote_spanned!(literal.span()=> ::core::compile_error!(#message););
-    let from_disk = match compile_file(&package(), &path) {
-        Ok(from_disk) => from_disk,
+    let compiled_file = match compile_file(&package(), &path) {
+        Ok(compiled_file) => compiled_file,
         Err(reason) => {
             return error(format!(
                 "{path}: {reason}; write the path of a model file in this package"
@@ -61,11 +61,11 @@ pub fn axle_file(tokens: proc_macro::TokenStream) -> proc_macro::TokenStream {
             .into();
         }
     };
-    let expanded = match from_disk.compiled {
+    let expanded = match compiled_file.compiled {
         Ok(compiled) => rust(&module(&compiled)),
         Err(report) => error(format!("{}\n{report}", report.compact())),
     };
-    let watched = watch(&from_disk.read);
+    let watched = watch(&compiled_file.read);
     quote!(#expanded #watched).into()
 }
 
@@ -79,7 +79,7 @@ fn rust(text: &str) -> TokenStream {
 }
 
 /// rustc knows which files an `include_bytes!` reads, and compiles again when they change.
-fn watch(read: &[Read]) -> TokenStream {
+fn watch(read: &[LoadedFile]) -> TokenStream {
     let files = read
         .iter()
         .map(|read| package().join(&read.source.name).display().to_string());
