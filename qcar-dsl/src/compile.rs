@@ -7,7 +7,7 @@ use crate::check::{check_text, check_tokens};
 use crate::derive::alone::alone;
 use crate::derive::describe::{describe, vectors};
 use crate::derive::response::Wanted;
-use crate::derive::{linear, motion, response, identifiability};
+use crate::derive::{identifiability, linear, motion, response};
 use crate::diagnostic::Report;
 use crate::program::schedule::{Compiled, schedule};
 use crate::source::{Load, Source};

@@ -5,7 +5,7 @@ mod spelling;
 
 use qcar_model::About;
 
-use crate::back::straight::{Locals, Names, Straight, ProgramText};
+use crate::back::straight::{Locals, Names, ProgramText, Straight};
 use crate::derive::vectors::Vectors;
 use crate::expr::Symbol;
 use crate::program::schedule::Compiled;
@@ -99,7 +99,13 @@ struct Part<'a> {
 }
 
 impl<'a> Part<'a> {
-    fn new(compiled: &Compiled, program: &'a Program, known: &VariableNames, constants: &[String], names: &mut Names) -> Self {
+    fn new(
+        compiled: &Compiled,
+        program: &'a Program,
+        known: &VariableNames,
+        constants: &[String],
+        names: &mut Names,
+    ) -> Self {
         let labels = Straight::new(compiled).labels(program);
         let uses = Uses::of(program);
         let mut part = Part {

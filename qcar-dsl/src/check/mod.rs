@@ -22,12 +22,12 @@ pub(crate) mod slopes;
 mod stiffness;
 // The rules.
 mod duplicates;
+mod force_rates;
 mod held;
 mod inertia;
 mod kinetic;
 mod nodes;
 mod passive;
-mod force_rates;
 // Passivity of links whose laws use each other.
 mod coupled;
 // From text or tokens to a checked model.

@@ -22,8 +22,8 @@ use crate::expr::{Expr, Graph, Symbol};
 use crate::model::{Model, Quantity, Signal, Term};
 
 use forces::Forces;
-use responses::Derived;
 use observable::Observable;
+use responses::Derived;
 
 /// Number of motions at which a nonlinear model is evaluated first, and if that leaves parameters undetermined: few
 /// motions reach each piece of a curve.

@@ -158,7 +158,12 @@ impl<'a> System<'a> {
     }
 
     /// The derivatives of all amplitudes by each parameter, if there are no adjoints of the outputs.
-    fn moved_by_parameters(&self, g: &mut Graph, source: ExcitationSource, amplitudes: &[Complex]) -> Vec<Vec<Complex>> {
+    fn moved_by_parameters(
+        &self,
+        g: &mut Graph,
+        source: ExcitationSource,
+        amplitudes: &[Complex],
+    ) -> Vec<Vec<Complex>> {
         let moved = |change| self.moved(g, source, amplitudes, change);
         match self.compliance.has_adjoints() {
             true => Vec::new(),

@@ -53,9 +53,12 @@ pub fn stray_bracket(span: Span, found: char, open: Option<(Span, char)>) -> Dia
 
 /// Brackets or expressions that are nested too deeply, or too long.
 pub fn nested_too_deep(span: Span) -> Diagnostic {
-    Diagnostic::error(Code::NestedTooDeep, "this is nested too deeply, or too long, to be read")
-        .label(span, "beyond the limit")
-        .hint("write parts of it as `let part = …;`")
+    Diagnostic::error(
+        Code::NestedTooDeep,
+        "this is nested too deeply, or too long, to be read",
+    )
+    .label(span, "beyond the limit")
+    .hint("write parts of it as `let part = …;`")
 }
 
 /// What the lexer refuses for any other reason.

@@ -1,7 +1,7 @@
 //! Applies the changes of an effect to the tree of a model.
 
-use super::model_tree::{ModelTree, rolling};
 use super::bind::Bindings;
+use super::model_tree::{ModelTree, rolling};
 use super::rewrite::{self, binary, named};
 use super::terms::is_term;
 use super::{PatchResult, Signal, SignalChange, refused};
@@ -265,7 +265,13 @@ impl<'a> Patching<'a> {
         }
     }
 
-    fn replace_point(&mut self, direction: &str, point: &Dotted, of: Option<&Name>, by: &Expression) -> PatchResult<()> {
+    fn replace_point(
+        &mut self,
+        direction: &str,
+        point: &Dotted,
+        of: Option<&Name>,
+        by: &Expression,
+    ) -> PatchResult<()> {
         let (old, new) = (
             self.bindings.point(point, direction)?,
             self.bindings.expression(by, direction)?,

@@ -37,15 +37,15 @@ pub mod difference;
 
 use std::borrow::Cow;
 
-pub use query::Values;
-pub(crate) use model_tree::ModelTree;
+pub use all_outputs::with_all_outputs;
 use bind::Bindings;
 pub use curve::{Curve, Ordinate};
+pub(crate) use model_tree::ModelTree;
 use place::Place;
 pub use qcar_model::ParameterRole;
+pub use query::Values;
 use roles::Roles;
 pub use scale::Scale;
-pub use all_outputs::with_all_outputs;
 
 use crate::check::Checked;
 use crate::check::check_text;
@@ -240,7 +240,13 @@ impl Patch {
             let mistake = effects::no_such_place(name.span, &name.text, place, model, &labels);
             return Err(self.report(refused(mistake)));
         };
-        self.made(&identifiability::with_identifiability(model.clone()), &base, &roles, place, values)
+        self.made(
+            &identifiability::with_identifiability(model.clone()),
+            &base,
+            &roles,
+            place,
+            values,
+        )
     }
 
     fn report(&self, diagnostics: Refusal) -> Report {

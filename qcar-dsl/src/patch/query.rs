@@ -43,7 +43,10 @@ pub fn value(model: &Model, e: crate::expr::Expr, values: Values) -> f64 {
 pub fn numbers(base: &ModelTree, asked: &[Expression], values: Values) -> Vec<f64> {
     let name = |place: usize| format!("quantity {place}");
     let quantities = asked.iter().enumerate();
-    let (model, _) = with_quantities(base, quantities.map(|(place, e)| as_quantity(&name(place), e)).collect());
+    let (model, _) = with_quantities(
+        base,
+        quantities.map(|(place, e)| as_quantity(&name(place), e)).collect(),
+    );
     let answer = |place: usize| {
         let mut definitions = model.definitions.iter();
         let own = definitions.find(|definition| definition.name == name(place))?;

@@ -5,8 +5,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::query::{Values, numbers};
 use super::model_tree::{ModelTree, coordinates, links};
+use super::query::{Values, numbers};
 use super::rewrite::names_in;
 use super::stretch::{levered, lower, upper};
 use crate::front::syntax::{CoordinateKind, Direction, Dotted, Expression, Link};

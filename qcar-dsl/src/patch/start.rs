@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use qcar_model::ParameterRole;
 
-use super::query::{Values, as_quantity, value, with_quantities};
 use super::model_tree::ModelTree;
+use super::query::{Values, as_quantity, value, with_quantities};
 use super::rewrite::{made, names_in};
 use super::scale::Scale;
 
@@ -44,7 +44,11 @@ const ROLES: [&str; 4] = ["start of ", "low end of ", "high end of ", "vanishing
 /// The start, range and declaration of every parameter.
 ///
 /// # Errors Fails for expressions with unknown names, with a unit other than the parameter's, or without a value.
-pub fn evaluate(base: &ModelTree, asked: &[BoundParameter], values: Values) -> Result<Vec<(NewParameter, Parameter)>, Refusal> {
+pub fn evaluate(
+    base: &ModelTree,
+    asked: &[BoundParameter],
+    values: Values,
+) -> Result<Vec<(NewParameter, Parameter)>, Refusal> {
     let (model, found) = with_expressions(base, asked);
     if !found.is_empty() {
         return Err(found);
@@ -115,7 +119,11 @@ struct Numbers {
     unit: Unit,
 }
 
-fn numbers(one: &BoundParameter, model: &Model, answers: &BTreeMap<&str, (f64, Unit)>) -> Result<Numbers, Box<Diagnostic>> {
+fn numbers(
+    one: &BoundParameter,
+    model: &Model,
+    answers: &BTreeMap<&str, (f64, Unit)>,
+) -> Result<Numbers, Box<Diagnostic>> {
     let name = unit_of(one);
     let unit = model.parameters.iter().find(|parameter| parameter.name == name);
     let unit = unit.map_or(Unit::ONE, |parameter| parameter.unit);

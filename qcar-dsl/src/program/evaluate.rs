@@ -10,8 +10,8 @@ mod code;
 use qcar_model::{About, Contact, Contacts, LANES, Lanes, Model, Points, ResponseMut};
 
 use crate::program::schedule::Compiled;
-use code::Code;
 use arguments::{Arguments, Part, contact_entries, prepared, unprepared};
+use code::Code;
 
 /// A compiled model, ready to be evaluated.
 ///
@@ -93,7 +93,8 @@ impl Model for Evaluator {
     }
 
     fn prepare(&self, p: &[f64], constants: &mut [f64]) {
-        self.prepare.run(&Arguments::default().with(Part::Parameters, p), constants);
+        self.prepare
+            .run(&Arguments::default().with(Part::Parameters, p), constants);
     }
 
     fn derivative(&self, constants: &[f64], x: &[f64], u: &[f64], dx: &mut [f64]) {

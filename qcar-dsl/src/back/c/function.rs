@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::back::straight::{
-    FREQUENCIES, Function, Language, Leaf, Local, Locals, Names, Pieces, Straight, ProgramText, usual_name,
+    FREQUENCIES, Function, Language, Leaf, Local, Locals, Names, Pieces, ProgramText, Straight, usual_name,
 };
 use crate::expr;
 use crate::program::Value;

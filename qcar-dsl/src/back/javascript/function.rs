@@ -3,7 +3,7 @@
 
 use super::RESERVED;
 use crate::back::straight::{
-    FREQUENCIES, Function, Language, Leaf, Locals, Names, Pieces, Straight, ProgramText, usual_name,
+    FREQUENCIES, Function, Language, Leaf, Locals, Names, Pieces, ProgramText, Straight, usual_name,
 };
 use crate::expr;
 use crate::program::Value;

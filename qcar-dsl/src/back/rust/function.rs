@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::back::straight::{
-    FREQUENCIES, Function, Language, Leaf, Local, Locals, Pieces, Straight, ProgramText, computed,
+    FREQUENCIES, Function, Language, Leaf, Local, Locals, Pieces, ProgramText, Straight, computed,
 };
 use crate::expr;
 use crate::program::Value;

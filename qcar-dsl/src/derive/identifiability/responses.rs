@@ -193,7 +193,13 @@ impl<'a> Matrices<'a> {
     }
 
     /// A signal of a channel: a prescribed motion, or a signal that follows from an output.
-    fn signal(&self, signal: &Signal, source: ExcitationSource, excited: &Excited, frequency: f64) -> Option<Observable> {
+    fn signal(
+        &self,
+        signal: &Signal,
+        source: ExcitationSource,
+        excited: &Excited,
+        frequency: f64,
+    ) -> Option<Observable> {
         let model = self.derived.model;
         if let Signal::Motion(c, quantity) = *signal
             && let CoordinateKind::Road | CoordinateKind::Motion = model.coordinates[usize::from(c.0)].kind

@@ -241,7 +241,10 @@ impl Derivation<'_> {
     pub(super) fn accelerations_of_nodes(&mut self) {
         let mut by_time = Differential::new(self.rates_of_leaves());
         let is_led = |d: &Self, c: &CoordinateId| d.leaders.contains_key(c);
-        let (led, damped): (Vec<_>, Vec<_>) = self.with_role(MotionKind::Damped).into_iter().partition(|c| is_led(self, c));
+        let (led, damped): (Vec<_>, Vec<_>) = self
+            .with_role(MotionKind::Damped)
+            .into_iter()
+            .partition(|c| is_led(self, c));
         for c in damped.into_iter().chain(self.with_role(MotionKind::Static)).chain(led) {
             let found = self
                 .definitions

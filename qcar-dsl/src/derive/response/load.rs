@@ -12,7 +12,9 @@ pub(super) type Load = Vec<(usize, Complex)>;
 
 /// The entry of a force input.
 pub(super) fn by_source(inputs: &[(u16, Complex)], source: ExcitationSource) -> Option<Complex> {
-    let found = inputs.iter().find(|(input, _)| ExcitationSource::Force(*input) == source);
+    let found = inputs
+        .iter()
+        .find(|(input, _)| ExcitationSource::Force(*input) == source);
     found.map(|&(_, value)| value)
 }
 

@@ -2,8 +2,8 @@
 
 use super::declare::declared;
 use super::law::force_unit;
-use super::names::{Moving, DirectionName};
-use super::{Resolved, StatementOfDirection, Reported, Resolver};
+use super::names::{DirectionName, Moving};
+use super::{Reported, Resolved, Resolver, StatementOfDirection};
 use crate::diagnostic::{Diagnostic, names, units as mistakes};
 use crate::expr::{CoordinateId, Expr, LinkId};
 use crate::front::syntax::{self, Expression, ExpressionKind, LawStatement, Name, Statement};

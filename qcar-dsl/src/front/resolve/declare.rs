@@ -1,8 +1,8 @@
 //! Parameters, derived quantities, coordinates and gravity.
 
-use super::names::{Global, DirectionName};
+use super::names::{DirectionName, Global};
 use super::value::Locals;
-use super::{Resolved, StatementOfDirection, Resolver};
+use super::{Resolved, Resolver, StatementOfDirection};
 use crate::diagnostic::{names, units as mistakes};
 use crate::expr::CoordinateId;
 use crate::front::print::one_line;

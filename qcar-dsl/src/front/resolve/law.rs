@@ -1,7 +1,7 @@
 //! Laws: terms, inner states and expanded elements.
 
 use super::value::{Locals, Value};
-use super::{Resolved, Reported, Resolver};
+use super::{Reported, Resolved, Resolver};
 use crate::diagnostic::{names, reading, units as mistakes};
 use crate::expr::{Expr, LinkId, Symbol};
 use crate::front::syntax::{Element, ElementUse, Expression, LawStatement, Name, UnitText};

@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::value::{Locals, Value};
-use super::{Resolved, Reported, Resolver};
+use super::{Reported, Resolved, Resolver};
 use crate::diagnostic::{Diagnostic, names as mistakes};
 use crate::expr::{CoordinateId, LinkId, Symbol};
 use crate::front::syntax::{Dotted, Name};

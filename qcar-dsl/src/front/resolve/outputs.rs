@@ -3,7 +3,7 @@
 use super::declare::declared;
 use super::law::force_unit;
 use super::names::DirectionName;
-use super::{Resolved, StatementOfDirection, Reported, Resolver};
+use super::{Reported, Resolved, Resolver, StatementOfDirection};
 use crate::diagnostic::names;
 use crate::expr::CoordinateId;
 use crate::front::syntax::{Dotted, Name, Statement};
@@ -154,7 +154,8 @@ impl Resolver<'_> {
     fn reference(&mut self, path: &Dotted, direction: &str) -> Resolved<Denominator> {
         if let Some((quantity, owner)) = path.names.split_last()
             && quantity.text == "force"
-            && let Some((_, DirectionName::Force(place))) = self.names.find(&Dotted { names: owner.to_vec() }, direction)
+            && let Some((_, DirectionName::Force(place))) =
+                self.names.find(&Dotted { names: owner.to_vec() }, direction)
         {
             return Ok(Denominator::Force(place));
         }

@@ -1,6 +1,6 @@
 //! The stretch of a link: a linear combination of coordinates with coefficients in parameters.
 
-use super::names::{Moving, DirectionName};
+use super::names::{DirectionName, Moving};
 use super::value::{Locals, Value};
 use super::{Resolved, Resolver};
 use crate::diagnostic::units as mistakes;

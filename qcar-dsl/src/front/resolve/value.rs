@@ -1,6 +1,6 @@
 //! From expressions of the tree to expressions of the graph, with their units.
 
-use super::{Resolved, Reported, Resolver};
+use super::{Reported, Resolved, Resolver};
 use crate::diagnostic::{names, units as mistakes};
 use crate::expr::{Expr, Function};
 use crate::front::parse::FUNCTIONS;
@@ -124,7 +124,13 @@ impl Resolver<'_> {
         })
     }
 
-    fn binary(&mut self, operator: Operator, left: &Expression, right: &Expression, locals: &Locals) -> Resolved<Value> {
+    fn binary(
+        &mut self,
+        operator: Operator,
+        left: &Expression,
+        right: &Expression,
+        locals: &Locals,
+    ) -> Resolved<Value> {
         let (a, b) = (self.value(left, locals), self.value(right, locals));
         let (a, b) = (a?, b?);
         let graph = &mut self.model.graph;
@@ -257,7 +263,13 @@ impl Resolver<'_> {
     }
 
     /// `then` if the condition holds, else `otherwise`.
-    fn choose(&mut self, condition: &Logic<Comparison>, then: Expr, otherwise: Expr, locals: &Locals) -> Resolved<Expr> {
+    fn choose(
+        &mut self,
+        condition: &Logic<Comparison>,
+        then: Expr,
+        otherwise: Expr,
+        locals: &Locals,
+    ) -> Resolved<Expr> {
         match condition {
             Logic::Test(test) => self.compare(test, then, otherwise, locals),
             Logic::Not(part) => self.choose(part, otherwise, then, locals),
