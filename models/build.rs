@@ -64,7 +64,7 @@ fn compile(file: &Path) -> Option<(String, String)> {
     }
 }
 
-/// `Shipped { … }`: the module's type, and the texts that it comes from.
+/// `Shipped { … }`: the module's type, and its source texts.
 fn entry(name: &str, compiled_file: &CompiledFile) -> String {
     let mut texts = compiled_file
         .read
@@ -80,13 +80,13 @@ fn entry(name: &str, compiled_file: &CompiledFile) -> String {
     )
 }
 
-/// The text of a file of this package, put into the program.
+/// The text of a file of this package, as an expression.
 fn included(path: &str) -> String {
     let below = format!("/{path}");
     format!("include_str!(concat!(env!(\"CARGO_MANIFEST_DIR\"), {below:?}))")
 }
 
-/// `ShippedEffect { … }`: an effect that reads well; mistakes go to cargo.
+/// `ShippedEffect { … }`: a valid effect; mistakes go to cargo.
 fn effect(file: &Path) -> Option<String> {
     let name = file.display().to_string();
     let text = std::fs::read_to_string(file).expect("a file that was listed can be read");
@@ -108,7 +108,7 @@ fn effect(file: &Path) -> Option<String> {
     }
 }
 
-/// Tells cargo what is wrong, in lines and as it reads best.
+/// Prints a report, as lines for cargo and in full.
 fn refuse(report: &Report) {
     report
         .compact()

@@ -1,4 +1,4 @@
-//! The macro doors of the axle compiler: a model in the text of a program, or in a file of its package.
+//! The macros of the axle compiler, for a model in the text of a program or in a file of its package.
 //!
 //! Both expand to the module that `qcar_dsl::rust` prints; the crate that uses them depends on `qcar-runtime`.
 
@@ -11,7 +11,7 @@ use qcar_dsl::rust::module;
 use quote::{quote, quote_spanned};
 use syn::{LitStr, parse_macro_input};
 
-/// Compiles an axle that is written in place; the path of a family is relative to the package.
+/// Compiles an axle that is written inline; the path of a family is relative to the package.
 ///
 /// ```
 /// qcar_derive::axle! {
@@ -78,7 +78,7 @@ fn rust(text: &str) -> TokenStream {
     text.parse().expect("a generated module is Rust")
 }
 
-/// rustc knows which files an `include_bytes!` reads, and compiles again when they change.
+/// Makes rustc watch the files: it compiles again if a file of an `include_bytes!` changes.
 fn watch(read: &[LoadedFile]) -> TokenStream {
     let files = read
         .iter()

@@ -1,7 +1,7 @@
 //! Entry to machine code and its calls: all unsafe code.
 #![allow(
     unsafe_code,
-    reason = "a processor runs what was written into memory, and Rust cannot know what that does"
+    reason = "the processor runs code that was written into memory, which Rust cannot check"
 )]
 
 use memmap2::{Mmap, MmapMut};
@@ -162,7 +162,7 @@ fn at_least<T>(entries: &[T], least: usize) -> &[T] {
 /// # Safety
 /// There are as many rows as the call has arguments.
 unsafe extern "sysv64" fn compute<const N: usize>(call: &Call, rows: *const Wide, result: &mut Wide) {
-    // SAFETY: the caller, which is the code of a program with this call, says so.
+    // SAFETY: the caller, the code of a program with this call, has stored this many rows.
     let rows = unsafe { std::slice::from_raw_parts(rows, call.arguments()) };
     for (point, result) in result.0.iter_mut().enumerate().take(N) {
         *result = call.value(|argument| rows[argument].0[point]);

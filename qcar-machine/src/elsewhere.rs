@@ -12,7 +12,7 @@ use crate::shape::{Breadth, Shape};
 pub enum Code {}
 
 impl Code {
-    /// Nothing.
+    /// No machine code: always `None`.
     pub fn new(_vectors: &Vectors, _program: &Program, _shape: Shape, _breadth: Breadth) -> Option<Code> {
         None
     }
