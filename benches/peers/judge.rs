@@ -16,7 +16,8 @@ type Results = BTreeMap<String, (f64, f64)>;
 
 /// The largest difference, as text.
 ///
-/// # Panics If it is larger than rounding explains: then the other program does not do the same work.
+/// # Panics
+/// If it is larger than rounding explains: then the other program does not do the same work.
 pub fn difference(task: &str, peer: &Peer) -> String {
     let want = match task {
         "matrices" => matrices(),

@@ -100,7 +100,8 @@ pub fn abreast<M: Model + ?Sized>(model: &M) -> impl FnMut() {
 
 /// Largest difference of a program's final states over all rides, relative to 1 cm and 0.1 m/s.
 ///
-/// # Panics If the difference is larger than the tolerance explains.
+/// # Panics
+/// If the difference is larger than the tolerance explains.
 pub fn difference(peer: Option<&Peer>) -> String {
     let worst = PROBES.into_iter().map(|samples| {
         let exact = states(samples, EXACT);

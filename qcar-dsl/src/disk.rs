@@ -28,14 +28,16 @@ pub struct LoadedFile {
 
 /// Compiles a model file in a folder, such as that of a package.
 ///
-/// # Errors Fails with the reason why the model file itself cannot be read.
+/// # Errors
+/// Fails with the reason why the model file itself cannot be read.
 pub fn compile_file(folder: &Path, path: &str) -> Result<CompiledFile, String> {
     compile_file_wanted(folder, path, Wanted::Jacobian)
 }
 
 /// The same with the wanted responses only.
 ///
-/// # Errors Fails as [`compile_file`] does.
+/// # Errors
+/// Fails as [`compile_file`] does.
 pub fn compile_file_wanted(folder: &Path, path: &str, wanted: Wanted) -> Result<CompiledFile, String> {
     let files = Files::new(folder);
     let source = files.read(PathBuf::from(path), path)?;
@@ -63,7 +65,8 @@ impl Files {
 
     /// Loads a file that another file names, relative to that one.
     ///
-    /// # Errors Fails with the reason why it cannot be read.
+    /// # Errors
+    /// Fails with the reason why it cannot be read.
     pub fn load(&self, asking: &str, written: &str) -> Result<Source, String> {
         let beside = Path::new(asking).parent().unwrap_or(Path::new(""));
         self.read(beside.join(written), written)

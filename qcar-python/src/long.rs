@@ -16,7 +16,8 @@ const STACK: usize = 8 << 20;
 
 /// Runs `work` on a separate thread while this one checks for signals.
 ///
-/// # Errors Fails with the exception of a signal, such as `KeyboardInterrupt`, after the work has ended.
+/// # Errors
+/// Fails with the exception of a signal, such as `KeyboardInterrupt`, after the work has ended.
 pub fn long<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
     let (finished, heard) = channel::<()>();
     let (done, signal) = py.detach(move || {

@@ -23,7 +23,8 @@ pub struct Ratios {
 
 /// Every channel of a model at `frequency` (Hz, above zero).
 ///
-/// # Errors Fails if a channel has no excitation, or if the model cannot give its signals.
+/// # Errors
+/// Fails if a channel has no excitation, or if the model cannot give its signals.
 pub fn ratios(
     model: &Loaded,
     sets: ArrayView2<'_, f64>,

@@ -62,7 +62,8 @@ pub struct Recorded {
 
 /// Simulates all rides in parallel; each is the same as it is alone.
 ///
-/// # Errors Fails with the message of the first ride that cannot be simulated.
+/// # Errors
+/// Fails with the message of the first ride that cannot be simulated.
 pub fn rides(model: &Loaded, common: &Common, each: &Each<'_>) -> Result<Recorded, String> {
     let count = each.p.nrows();
     let (outputs, samples) = (model.about().outputs.len(), common.samples);

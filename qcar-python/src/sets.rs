@@ -21,8 +21,9 @@ pub struct Sets {
 /// Determines the value of every parameter in every set: the columns of `given` are those of `names`, all others have
 /// their defaults.
 ///
-/// # Errors Fails for a name that is no parameter of the model, a parameter without a value, a value that is not
-/// finite, or a mass that is not positive.
+/// # Errors
+/// Fails for a name that is no parameter of the model, a parameter without a value, a value that is not finite, or a
+/// mass that is not positive.
 pub fn resolve(model: &Loaded, names: &[String], given: ArrayView2<'_, f64>) -> PyResult<Sets> {
     let about = model.about();
     let refused = |set: usize, why: String| {

@@ -67,7 +67,8 @@ pub fn fit_campaign<'py>(
     Ok((fitted.json(), ratios, correlations.collect(), fitted.figure()))
 }
 
-/// # Errors Fails for a nonlinear model, whose transmissibilities hold for one level only.
+/// # Errors
+/// Fails for a nonlinear model, whose transmissibilities hold for one level only.
 fn refuse_nonlinear(campaign: &Path, model: Option<&str>) -> Result<(), Failure> {
     let model = catalogue::of_campaign(&Campaign::open(campaign)?, model)?;
     let about = model.about();
@@ -125,7 +126,8 @@ pub fn simulate_campaign<'py>(
 
 /// Variant of a model.
 ///
-/// # Errors Fails if the name is none of the three.
+/// # Errors
+/// Fails if the name is none of the three.
 pub fn variant_named(name: &str) -> PyResult<simulate::VariantName> {
     match name {
         "complete" => Ok(simulate::VariantName::Complete),

@@ -70,7 +70,8 @@ impl ParameterFile {
     /// Reads a file, or the `campaign.toml` of a folder. Its values take precedence over those of the workbook that it
     /// names.
     ///
-    /// # Errors Fails with all problems of the file.
+    /// # Errors
+    /// Fails with all problems of the file.
     pub fn read(path: &Path) -> Result<ParameterFile, InputError> {
         if is_workbook(path) {
             return Ok(ParameterFile::from(Workbook::read(path, None)?));

@@ -38,7 +38,8 @@ struct Parameter {
 impl Answer {
     /// Reads a file.
     ///
-    /// # Errors Fails if the file cannot be read, is not JSON, or is not the result of a fit.
+    /// # Errors
+    /// Fails if the file cannot be read, is not JSON, or is not the result of a fit.
     pub fn read(path: &Path) -> Result<Self, InputError> {
         let text = read_text(path)?;
         let json: Value = serde_json::from_str(&text).map_err(|error| {
@@ -62,7 +63,8 @@ impl Answer {
 
     /// The joint distribution of all estimates that have a standard error.
     ///
-    /// # Errors Fails if the fit gives no distribution.
+    /// # Errors
+    /// Fails if the fit gives no distribution.
     pub fn posterior(&self, path: &Path) -> Result<Posterior, InputError> {
         let wrong = |found: String| {
             let expected = "estimates with standard errors and all correlations";

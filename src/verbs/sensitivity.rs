@@ -159,7 +159,8 @@ impl FromStr for PerKelvin {
 
 /// A relative change per kelvin, written as percent.
 ///
-/// # Errors Fails with the expected form, in words.
+/// # Errors
+/// Fails with the expected form, in words.
 pub(crate) fn per_kelvin(text: &str) -> Result<f64, String> {
     const MOST: f64 = 10.0;
     let number = text.trim().trim_end_matches('%').trim_end().parse::<f64>().ok();

@@ -9,7 +9,8 @@ use crate::source::Source;
 
 /// The model with the stretch and the force of every link and the acceleration of every mass among its outputs.
 ///
-/// # Errors Fails only through a mistake in this function, since every part of a checked model can be an output.
+/// # Errors
+/// Fails only through a mistake in this function, since every part of a checked model can be an output.
 pub fn with_all_outputs(model: &Checked) -> Result<Checked, Report> {
     let mut tree = ModelTree::of(model);
     for statement in &mut tree.axle.body {

@@ -137,7 +137,8 @@ pub enum Signal {
 impl Patch {
     /// Reads the file of an effect.
     ///
-    /// # Errors Fails with the report of every mistake that can be found without a model.
+    /// # Errors
+    /// Fails with the report of every mistake that can be found without a model.
     pub fn read(source: Source) -> Result<Patch, Report> {
         rules::effect_of(&source)
             .map(|effect| Patch {
@@ -227,9 +228,10 @@ impl Patch {
     /// The model with the effect at a place, given by its label, in its usual form. Starts and ranges that depend on
     /// parameters of the model use their `values`, otherwise their defaults, otherwise the middle of their ranges.
     ///
-    /// # Errors Fails if the effect does not apply at the place, if the model already has a name of the effect, if the
-    /// patched model breaks a rule of the compiler, or if the outputs cannot distinguish its parameters, since a search
-    /// must be able to find an effect.
+    /// # Errors
+    /// Fails if the effect does not apply at the place, if the model already has a name of the effect, if the patched
+    /// model breaks a rule of the compiler, or if the outputs cannot distinguish its parameters, since a search must be
+    /// able to find an effect.
     pub fn apply(&self, model: &Checked, place: &str, values: Values) -> Result<Patched, Report> {
         let base = ModelTree::of(model);
         let roles = Roles::of(&base, values);

@@ -43,7 +43,8 @@ const ROLES: [&str; 4] = ["start of ", "low end of ", "high end of ", "vanishing
 
 /// The start, range and declaration of every parameter.
 ///
-/// # Errors Fails for expressions with unknown names, with a unit other than the parameter's, or without a value.
+/// # Errors
+/// Fails for expressions with unknown names, with a unit other than the parameter's, or without a value.
 pub fn evaluate(
     base: &ModelTree,
     asked: &[BoundParameter],

@@ -91,8 +91,8 @@ struct Acceleration {
 impl<'a, M: Model + ?Sized> Metrics<'a, M> {
     /// The metrics of a model in the `chosen` groups.
     ///
-    /// # Errors Fails if metrics of rides are chosen for a model without a tyre or without an acceleration among its
-    /// outputs.
+    /// # Errors
+    /// Fails if metrics of rides are chosen for a model without a tyre or without an acceleration among its outputs.
     pub fn new(model: &'a M, chosen: &[Metric], ratios: Vec<Ratio>) -> Result<Self, MetricsError> {
         let about = model.about();
         let rides = chosen.iter().any(|metric| metric.of_rides());
@@ -163,7 +163,8 @@ impl<'a, M: Model + ?Sized> Metrics<'a, M> {
 
     /// The values of [`Metrics::columns_of_rides`] for a ride with samples at `rate` (Hz).
     ///
-    /// # Errors Fails if the wheel does not respond to the cleat, or if the ride ends too early.
+    /// # Errors
+    /// Fails if the wheel does not respond to the cleat, or if the ride ends too early.
     pub fn of_ride(&self, ride: &Ride, rate: f64) -> Result<Vec<f64>, CompareError> {
         let record = |own: &Acceleration| &ride.outputs[own.output];
         let Some(first) = self.accelerations.get(self.first) else {

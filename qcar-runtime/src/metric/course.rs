@@ -32,7 +32,8 @@ impl Course {
     /// A random road of ISO 8608 at a speed (m/s), for a duration (s), by default eight seconds. Its name is
     /// `iso_C_60kmh`, `iso_C7_60kmh` with seed 7, or `iso_C_60kmh_20s` with a given duration.
     ///
-    /// # Errors Fails if the speed is so low that the run ends before the road has risen from flat.
+    /// # Errors
+    /// Fails if the speed is so low that the run ends before the road has risen from flat.
     pub fn random(class: Class, seed: u64, speed: f64, duration: Option<f64>) -> Result<Self, RoadError> {
         let stated = driven(speed, duration);
         let duration = duration.unwrap_or(DURATION);
@@ -56,7 +57,8 @@ impl Course {
     /// A road from its first point at a speed (m/s), to its end or for a duration (s). The name includes both, as in
     /// `belgian_50kmh` and `belgian_50kmh_20s`.
     ///
-    /// # Errors Fails if the road ends before the duration.
+    /// # Errors
+    /// Fails if the road ends before the duration.
     pub fn along(name: &str, road: Road, speed: f64, duration: Option<f64>) -> Result<Self, RoadError> {
         let stated = driven(speed, duration);
         let [first, last] = road.extent();
@@ -78,7 +80,8 @@ impl Course {
 
     /// The runs of thesis table 3.3, with names such as `30kmh_20mm`.
     ///
-    /// # Errors Never fails if the shape of the cleat is a road.
+    /// # Errors
+    /// Never fails if the shape of the cleat is a road.
     pub fn standard() -> Result<Vec<Self>, RoadError> {
         let course = |own: Standard| {
             let name = format!("{:.0}kmh_{:.0}mm", 3.6 * own.speed, 1e3 * own.height);

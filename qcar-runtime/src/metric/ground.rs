@@ -173,8 +173,8 @@ impl<'a> Ground<'a> {
 
     /// The value of each reading.
     ///
-    /// # Errors Fails if the parameters are refused, if a ride fails, or if a metric has no value with these
-    /// parameters.
+    /// # Errors
+    /// Fails if the parameters are refused, if a ride fails, or if a metric has no value with these parameters.
     pub fn measure(&self, values: &Values) -> Result<Vec<f64>, MetricError> {
         Ok(self.measure_with(values, &[])?.values)
     }

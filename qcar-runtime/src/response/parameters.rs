@@ -97,8 +97,9 @@ impl Values {
     ///
     /// All names in `given` must be parameters of the model; `vehicle` may have others, since it describes the car.
     ///
-    /// # Errors Fails with every name that is not a parameter of the model, and every parameter that has no value or
-    /// whose value is not finite.
+    /// # Errors
+    /// Fails with every name that is not a parameter of the model, and every parameter that has no value or whose value
+    /// is not finite.
     pub fn resolve(
         about: &About,
         given: &BTreeMap<String, f64>,

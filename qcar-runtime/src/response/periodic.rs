@@ -61,7 +61,8 @@ pub struct Cycle {
 
 /// Results for outputs, given by their positions in `y`.
 ///
-/// # Panics If the output was not requested.
+/// # Panics
+/// If the output was not requested.
 impl Cycle {
     /// Amplitudes of the harmonics from 0, relative in phase to the excitation.
     pub fn output(&self, output: usize) -> &[Complex<f64>] {

@@ -20,7 +20,8 @@ pub struct Ratio {
 
 /// The ratio of two signals when `excitation` alone acts, at `frequency` (Hz, above zero).
 ///
-/// # Errors Fails if the model cannot give one of the signals.
+/// # Errors
+/// Fails if the model cannot give one of the signals.
 pub fn ratio<M: Model + ?Sized>(
     model: &M,
     values: &Values,
@@ -36,7 +37,8 @@ pub fn ratio<M: Model + ?Sized>(
 
 /// The ratio of two signals of an evaluated response; without derivatives if the response has none.
 ///
-/// # Errors Fails as [`ratio`] does.
+/// # Errors
+/// Fails as [`ratio`] does.
 pub fn between<M: Model + ?Sized>(
     response: &Response<'_, M>,
     values: &Values,

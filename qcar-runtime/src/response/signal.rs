@@ -117,7 +117,8 @@ pub fn driver(about: &About, channel: &Channel) -> Option<usize> {
 
 /// Finds `signal` in the response to `excitation`.
 ///
-/// # Errors Fails if the model has no such location, no such output, or no response of it.
+/// # Errors
+/// Fails if the model has no such location, no such output, or no response of it.
 pub fn locate(about: &About, layout: &ResponseLayout, excitation: usize, signal: &Signal) -> Result<Term, SignalError> {
     let source = &about.excitations[excitation];
     if let Some(power) = power_of_excitation(source, signal) {
@@ -137,7 +138,8 @@ pub fn locate(about: &About, layout: &ResponseLayout, excitation: usize, signal:
 
 /// The output from which `signal` follows, and the power of jω between them.
 ///
-/// # Errors Fails if the model has no such location, or no such output.
+/// # Errors
+/// Fails if the model has no such location, or no such output.
 pub fn output_of(about: &About, signal: &Signal) -> Result<(usize, i32), SignalError> {
     best_output(about, signal).ok_or_else(|| missing(about, signal))
 }

@@ -32,7 +32,8 @@ pub fn size(values: &Values, parameter: usize) -> f64 {
 
 /// Elasticities of the readings of a ground by leading parameters, given by their positions.
 ///
-/// # Errors Fails if a metric has no value.
+/// # Errors
+/// Fails if a metric has no value.
 pub fn elasticities(ground: &Ground<'_>, values: &Values, parameters: &[usize]) -> Result<Elasticities, MetricError> {
     let directions: Vec<Vec<f64>> = parameters
         .iter()

@@ -54,7 +54,8 @@ pub struct Ride {
 /// Simulates rides in parallel. The results do not depend on the number of threads. Reports to `on_progress` after each
 /// ride.
 ///
-/// # Errors Each ride fails as [`ride`] does.
+/// # Errors
+/// Each ride fails as [`ride`] does.
 pub fn rides<M: Model + ?Sized>(
     car: &Car<'_, M>,
     drives: &[Drive<'_>],
@@ -66,8 +67,9 @@ pub fn rides<M: Model + ?Sized>(
 
 /// Simulates a ride that begins at rest on the flat ground before the road.
 ///
-/// # Errors Fails if a number of the drive or car is invalid, if the road is too short, if the model has no tyre that
-/// can roll or no static equilibrium, or if the integration stops early.
+/// # Errors
+/// Fails if a number of the drive or car is invalid, if the road is too short, if the model has no tyre that can roll
+/// or no static equilibrium, or if the integration stops early.
 pub fn ride<M: Model + ?Sized>(
     car: &Car<'_, M>,
     drive: &Drive<'_>,
@@ -81,7 +83,8 @@ pub fn ride<M: Model + ?Sized>(
 
 /// The final state of a ride, and the effort of the integration. No signal is recorded.
 ///
-/// # Errors Fails as [`ride`] does.
+/// # Errors
+/// Fails as [`ride`] does.
 pub fn end_of_ride<M: Model + ?Sized>(
     car: &Car<'_, M>,
     drive: &Drive<'_>,

@@ -23,7 +23,8 @@ use crate::tyre::Geometry;
 /// two points per sample they are accurate to about 1 % of the signal, with one to about 5 %. `None` if the axle is not
 /// linear, or has a point contact.
 ///
-/// # Errors Fails as [`ride`](super::ride()) does, and if a car with a moved set has no static equilibrium.
+/// # Errors
+/// Fails as [`ride`](super::ride()) does, and if a car with a moved set has no static equilibrium.
 pub fn variation<M: Model + ?Sized>(
     car: &Car<'_, M>,
     drive: &Drive<'_>,

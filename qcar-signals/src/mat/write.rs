@@ -79,7 +79,8 @@ impl Array {
 /// and `_` become `_`, `x` is prefixed if the name does not begin with a letter, `_` is appended to a keyword, and a
 /// name longer than [`LONGEST_NAME`] is cut.
 ///
-/// # Errors Fails if two variables, or two fields of a structure, would get the same name.
+/// # Errors
+/// Fails if two variables, or two fields of a structure, would get the same name.
 pub fn v5(description: &str, variables: &[(String, Array)]) -> Result<Vec<u8>, String> {
     let mut file = vec![b' '; VERSION];
     for (to, from) in file

@@ -54,7 +54,8 @@ impl Field {
 
     /// Checks that the field lies within a record.
     ///
-    /// # Errors Fails with the reason why it cannot be read.
+    /// # Errors
+    /// Fails with the reason why it cannot be read.
     pub(super) fn checked(self, record: usize) -> Result<Field, String> {
         let Field::Bits {
             byte,

@@ -22,7 +22,8 @@ struct Scale {
 impl Scaling {
     /// The scales of a channel.
     ///
-    /// # Errors Fails with the reason why they cannot be applied.
+    /// # Errors
+    /// Fails with the reason why they cannot be applied.
     pub(super) fn of(properties: &Properties) -> Result<Scaling, String> {
         let done = properties
             .text("NI_Scaling_Status")
@@ -40,7 +41,8 @@ impl Scaling {
 
     /// The result of the last scale.
     ///
-    /// # Errors Fails if the input of a scale does not exist.
+    /// # Errors
+    /// Fails if the input of a scale does not exist.
     pub(super) fn apply(&self, mut raw: Vec<(Option<u32>, Vec<f64>)>) -> Result<Vec<f64>, String> {
         if raw.is_empty() {
             return Ok(Vec::new());

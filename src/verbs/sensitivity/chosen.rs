@@ -29,7 +29,8 @@ pub(crate) fn fits(pattern: &str, name: &str) -> bool {
 
 /// Keeps the courses that match the names; all without names.
 ///
-/// # Errors Fails with every name that matches no course.
+/// # Errors
+/// Fails with every name that matches no course.
 pub(crate) fn keep_runs(courses: &mut Vec<Course>, names: &[String]) -> Result<(), InputError> {
     let known: Vec<&str> = courses.iter().map(|course| course.name.as_str()).collect();
     let lost = names.iter().filter(|name| !known.iter().any(|own| fits(name, own)));
@@ -49,7 +50,8 @@ pub(crate) fn keep_runs(courses: &mut Vec<Course>, names: &[String]) -> Result<(
 
 /// The metrics that match the names, in the order of the names; a name may contain `*`.
 ///
-/// # Errors Fails with every name that matches no metric of the model.
+/// # Errors
+/// Fails with every name that matches no metric of the model.
 pub(crate) fn metrics(ground: &Ground<'_>, names: &[String]) -> Result<Vec<usize>, InputError> {
     let (mut chosen, mut problems) = (Vec::new(), Vec::new());
     for name in names {
@@ -133,7 +135,8 @@ pub(crate) fn usual(ground: &Ground<'_>, names: &RoleNames) -> Vec<usize> {
 /// Parameters by name, without duplicates and without tied ones; without names, all that the model does not declare
 /// `known`.
 ///
-/// # Errors Fails with every name that is no parameter of the model or is that of a tied parameter.
+/// # Errors
+/// Fails with every name that is no parameter of the model or is that of a tied parameter.
 pub(crate) fn parameters(about: &About, values: &Values, names: &[String]) -> Result<Vec<usize>, InputError> {
     if names.is_empty() {
         let all = about.parameters.iter().enumerate();
@@ -157,7 +160,8 @@ pub(crate) fn parameters(about: &About, values: &Values, names: &[String]) -> Re
 
 /// A parameter that is not tied to another.
 ///
-/// # Errors Fails if the name is no parameter of the model or is that of a tied parameter.
+/// # Errors
+/// Fails if the name is no parameter of the model or is that of a tied parameter.
 pub(crate) fn parameter(
     about: &About,
     values: &Values,

@@ -98,7 +98,8 @@ impl Doubts {
 
     /// The uncertainty as random draws.
     ///
-    /// # Errors Fails if the correlations of the fit contradict each other.
+    /// # Errors
+    /// Fails if the correlations of the fit contradict each other.
     pub fn chance(&self, subject: &Subject) -> Result<Chance, InputError> {
         let places = self.fitted(subject);
         let fit = match places.is_empty() {

@@ -103,7 +103,8 @@ pub(crate) struct Asked<'a> {
 
 /// Computes the sensitivities.
 ///
-/// # Errors Fails if a metric cannot be computed.
+/// # Errors
+/// Fails if a metric cannot be computed.
 pub(crate) fn gather(
     subject: &Subject,
     ground: &mut Ground<'_>,

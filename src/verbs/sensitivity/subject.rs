@@ -74,8 +74,9 @@ impl Errors {
 impl Subject {
     /// Reads a subject: a model by name or path, the folder of a campaign, or the results of a fit.
     ///
-    /// # Errors Fails if something cannot be read, compiled, resolved or fitted, if the argument is none of these, or
-    /// if there are roads but no tyre.
+    /// # Errors
+    /// Fails if something cannot be read, compiled, resolved or fitted, if the argument is none of these, or if there
+    /// are roads but no tyre.
     pub fn of(text: &str, beneath: &Beneath<'_>) -> Result<Self, Failure> {
         let mut subject = Self::over_cleats(text, beneath)?;
         if subject.tyre.is_none() && !beneath.roads.is_empty() {

@@ -138,7 +138,8 @@ impl Amount {
     /// The value of an amount of a quantity with an SI unit: a number, a quantity of that kind, or percent of the
     /// present value.
     ///
-    /// # Errors Fails with the expected form, in words.
+    /// # Errors
+    /// Fails with the expected form, in words.
     pub fn of(&self, unit: &str) -> Result<Meant, String> {
         match self {
             Amount::Number(value) if value.is_finite() => Ok(Meant::Value(*value)),
@@ -175,7 +176,8 @@ pub(super) struct Read {
 impl Read {
     /// Reads a file.
     ///
-    /// # Errors Fails if the file cannot be read, is not TOML, or has unknown keys.
+    /// # Errors
+    /// Fails if the file cannot be read, is not TOML, or has unknown keys.
     pub fn of(path: &Path) -> Result<Self, InputError> {
         let text = read_text(path)?;
         match toml::from_str(&text) {
@@ -224,7 +226,8 @@ impl Read {
 
     /// The roads; paths are relative to the folder of the file.
     ///
-    /// # Errors Fails with every text that is no road.
+    /// # Errors
+    /// Fails with every text that is no road.
     pub fn roads(&self) -> Result<Vec<roads::Asked>, InputError> {
         let (mut roads, mut problems) = (Vec::new(), Vec::new());
         for own in &self.file.roads {

@@ -77,7 +77,8 @@ struct Planner<'a, 'g> {
 impl Plan {
     /// Reads the task of a file for its subject.
     ///
-    /// # Errors Fails with all problems of the file, or if a metric cannot be computed for the present axle.
+    /// # Errors
+    /// Fails with all problems of the file, or if a metric cannot be computed for the present axle.
     pub fn of(read: &Read, subject: &Subject, ground: &mut Ground<'_>) -> Result<Self, Failure> {
         let mut planner = Planner {
             read,

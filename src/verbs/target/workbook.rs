@@ -13,7 +13,8 @@ use crate::verbs::fit::workbook::FILE;
 
 /// Writes the workbook into a folder.
 ///
-/// # Errors Fails if the folder cannot be written to.
+/// # Errors
+/// Fails if the folder cannot be written to.
 pub(super) fn write(of: &Answer, folder: &Path) -> Result<(), InputError> {
     let bytes = filled(&folder.join(FILE), |workbook| {
         targets(workbook, of)?;

@@ -10,7 +10,8 @@ const LONGEST: usize = super::LONGEST_NAME;
 /// The names in one scope as they are written: a character that is not an ASCII letter, a digit or `_` becomes `_`, `x`
 /// is prefixed to a name that does not begin with a letter, `_` is appended to a keyword, and a long name is cut.
 ///
-/// # Errors Fails if two names would be written alike.
+/// # Errors
+/// Fails if two names would be written alike.
 pub(super) fn names<'a>(given: impl IntoIterator<Item = &'a str>) -> Result<Vec<String>, String> {
     let mut known = HashMap::new();
     let written = given.into_iter().map(|name| {

@@ -8,7 +8,8 @@ use super::names::names;
 /// A file with these variables, named as in [`v5`](super::v5). A structure array with a length other than one becomes a
 /// cell array of structures.
 ///
-/// # Errors Fails as [`v5`](super::v5) does, or with an error of the HDF5 writer; no [`Array`] is known to cause one.
+/// # Errors
+/// Fails as [`v5`](super::v5) does, or with an error of the HDF5 writer; no [`Array`] is known to cause one.
 pub fn v73(variables: &[(String, Array)]) -> Result<Vec<u8>, String> {
     let names = names(variables.iter().map(|(name, _)| &**name))?;
     let mut file = MatBuilder::new(Options::default());
