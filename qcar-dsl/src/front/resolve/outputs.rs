@@ -170,8 +170,8 @@ impl Resolver<'_> {
             let mistake = names::wrong_kind(
                 path.span(),
                 &text,
-                "a name alone",
-                "something to outputs",
+                "a name without a quantity",
+                "a signal",
                 &format!("{text}.acceleration"),
             );
             return Err(self.report(mistake));
