@@ -1,5 +1,5 @@
-//! How the work of verbs grows with the length of a chain of masses: instructions of the whole program, counted by valgrind, which are
-//! the same on a busy machine. `docs/benchmarks.md` has the table.
+//! Growth of the work of verbs with the length of a chain of masses, in instructions of the whole program. Valgrind
+//! counts them, so other programs on the machine do not disturb. `docs/benchmarks.md` has the table.
 
 #![allow(missing_docs, reason = "a program, of which nothing is public")]
 
@@ -15,7 +15,7 @@ use std::process::Command;
 
 const LENGTHS: [usize; 4] = [10, 20, 40, 80];
 
-/// Verbs with what they are asked for; CHAIN stands for the model, and CAMPAIGN for one that it is driven by.
+/// Verbs with their arguments; CHAIN stands for the model, CAMPAIGN for a campaign that drives it.
 const ASKED: [&str; 12] = [
     "check CHAIN",
     "show CHAIN --stage equations",

@@ -46,7 +46,7 @@ library_benchmark_group!(
         response_and_jacobian_of_eight_sets
 );
 
-/// The counting itself.
+/// The counted functions.
 #[allow(
     clippy::disallowed_methods,
     reason = "the macro of gungraun ends the process of a bench"
@@ -55,7 +55,7 @@ mod counted {
     use super::models;
     gungraun::main!(library_benchmark_groups = models);
 
-    /// Counts, or is counted.
+    /// Starts the counting, or runs as the counted process.
     pub fn run() {
         main();
     }

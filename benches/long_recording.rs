@@ -1,7 +1,7 @@
-//! Recordings of some gigabytes: how long they take to be read, and how much memory.
+//! Reading of recordings of several gigabytes: time and memory.
 //!
-//! `cargo bench --bench long_recording -- 2` writes files of 2 GB into the temporary folder and takes them away again. Each is read by a
-//! process of its own, whose largest resident set the system tells (Linux).
+//! `cargo bench --bench long_recording -- 2` writes files of 2 GB into the temporary folder and removes them again.
+//! Each is read by a separate process, for which the system reports the largest resident set (Linux).
 
 #[path = "../tests/rig_files/writers/mod.rs"]
 #[expect(dead_code, reason = "other formats are written by tests alone")]
@@ -22,7 +22,7 @@ use writers::{Channel, Group};
 type Done<T> = Result<T, Box<dyn Error>>;
 
 const CHANNELS: usize = 16;
-/// Hz.
+/// Sample rate, Hz.
 const RATE: f64 = 1000.0;
 /// Samples of a frame of RPC III.
 const FRAME: usize = 2048;
@@ -41,7 +41,7 @@ fn main() -> Done<()> {
     }
 }
 
-/// Does something and says how long it took and the most memory that this process held.
+/// Runs a function and prints its time and the largest memory of this process.
 fn told(work: impl Fn() -> Done<usize>) -> Done<()> {
     let begun = Instant::now();
     let count = work()?;
@@ -49,7 +49,7 @@ fn told(work: impl Fn() -> Done<usize>) -> Done<()> {
     Ok(())
 }
 
-/// Of this process so far, MB; not a number where the system does not tell.
+/// Largest memory of this process so far, MB; NaN if the system does not report it.
 fn largest_resident_set() -> f64 {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
@@ -97,7 +97,7 @@ fn campaign(file: &str) -> String {
     head.to_string() + &channel("pad", 0) + &channel("body", 1) + &run("first", 0, 120) + &run("later", 600, 660)
 }
 
-/// Sixteen channels of so many samples.
+/// Sixteen channels of `samples` samples.
 fn group(samples: usize) -> Group {
     let wave = |channel: usize| (0..samples).map(|at| value(at, channel)).collect();
     let channel = |at: usize| Channel::new(&format!("channel_{at}"), "m/s^2", wave(at));
@@ -107,12 +107,12 @@ fn group(samples: usize) -> Group {
     }
 }
 
-/// Of a sawtooth that no two channels have alike.
+/// A sample of a sawtooth, different in each channel.
 fn value(at: usize, channel: usize) -> f64 {
     ((at + 31 * channel) % 1009) as f64 - 504.0
 }
 
-/// MDF 4 of doubles: a small file, behind which a longer block of data takes the place of its own.
+/// MDF 4 of doubles: a small file with a longer block of data appended, which replaces its own.
 fn mdf(file: &Path, bytes: f64) -> Done<()> {
     let record = 8 * (1 + CHANNELS);
     let records = bytes as usize / record;
@@ -139,7 +139,7 @@ fn mdf(file: &Path, bytes: f64) -> Done<()> {
             out.write_all(&value(at, channel).to_le_bytes())?;
         }
     }
-    // What is still on its way to the disk would be measured, too.
+    // Pending writes to the disk would be measured too.
     Ok(out.into_inner()?.sync_all()?)
 }
 

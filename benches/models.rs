@@ -27,7 +27,7 @@ fn matrices_and_jacobians(bencher: Bencher) {
     bencher.bench_local(|| black_box(&mut subject).linearise());
 }
 
-/// The same of eight parameter sets together.
+/// The same for eight parameter sets together.
 #[divan::bench(sample_size = 1000)]
 fn matrices_and_jacobians_of_eight_sets(bencher: Bencher) {
     let mut sets = Sets::new(MODEL);
@@ -41,7 +41,7 @@ fn response_and_jacobian(bencher: Bencher) {
     bencher.bench_local(|| black_box(&mut subject).respond());
 }
 
-/// The same of eight parameter sets together, four lines at a time.
+/// The same for eight parameter sets together, four lines at a time.
 #[divan::bench]
 fn response_and_jacobian_of_eight_sets(bencher: Bencher) {
     let mut sets = Sets::new(MODEL);

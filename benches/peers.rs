@@ -1,19 +1,21 @@
-//! qcar beside others on the same work: code written by hand, CasADi's C, Ceres, NumPy and SciPy, and of rides Boost.odeint.
+//! Compares qcar with other programs on the same work: code written by hand, CasADi's C, Ceres, NumPy and SciPy, and
+//! Boost.odeint for rides.
 //!
-//! `cargo bench --bench peers` builds what it can (g++, libceres-dev, libboost-dev; casadi, numpy and scipy for the Python in `target/python`, else
-//! `python3`), says what is missing, holds the results of each against qcar's, and times all of them in turn. The fastest
-//! round counts, which other programs on the machine have disturbed least; others tell their processor time, qcar goes by the clock.
-//! `docs/benchmarks.md` holds what it prints. The tasks are the same to the letter: the vertical chain of axle_d of `benches/subject`,
-//! 300 lines, five accelerations over the pad; the fit has qcar's residuals, bounds, starts and tolerances. A ride is
-//! that of `benches/cleat` without a record.
+//! `cargo bench --bench peers` builds what it can (g++, libceres-dev, libboost-dev; casadi, numpy and scipy for the
+//! Python in `target/python`, else `python3`), reports what is missing, compares the results of each with those of
+//! qcar, and times all of them in turn. The fastest round counts, since other programs on the machine have disturbed it
+//! least. The other programs report their processor time; qcar is timed by the clock. `docs/benchmarks.md` has the
+//! output. The tasks are identical: the vertical chain of axle_d of `benches/subject`, 300 lines, five accelerations
+//! over the pad; the fit has qcar's residuals, bounds, starts and tolerances. A ride is that of `benches/cleat` without
+//! a record.
 
 // Programs of others.
 #[path = "peers/child.rs"]
 mod child;
-// What they find.
+// Their results.
 #[path = "peers/judge.rs"]
 mod judge;
-// What they ride.
+// Their rides.
 #[path = "peers/rides.rs"]
 mod rides;
 
@@ -33,10 +35,11 @@ use qcar_runtime::fit::Setup;
 use qcar_runtime::model::{LANES, Model};
 use subject::{MODEL, Sets, Subject};
 
-/// Of each task in each way.
+/// Number of rounds of each task in each way.
 const ROUNDS: usize = 100;
 
-/// A way to do a task: its name, how many results one run has, and the seconds that so many runs take.
+/// A way to do a task: its name, the number of results of a run, and a function that gives the seconds of a number of
+/// runs.
 struct Way<'a> {
     name: String,
     results: usize,
@@ -115,7 +118,7 @@ fn subject<'a>(model: &'a dyn Model, work: fn(&mut Subject<'a>)) -> impl FnMut()
     move || work(black_box(&mut subject))
 }
 
-/// What runs here, by the clock: of so short a time a thread is not told how much of it was its own.
+/// Time of a function of this program, by the clock: the processor time of a thread is too coarse for short times.
 fn way<'a>(name: &str, results: usize, mut work: impl FnMut() + 'a) -> Way<'a> {
     let time = move |count| {
         let start = Instant::now();
@@ -129,7 +132,7 @@ fn way<'a>(name: &str, results: usize, mut work: impl FnMut() + 'a) -> Way<'a> {
     }
 }
 
-/// The rows of a task, in multiples of the first way's time.
+/// The rows of a task, with times relative to the first way.
 fn table<'a>(title: &str, task: &'static str, count: usize, own: impl Iterator<Item = Way<'a>>, peers: &'a [Peer]) {
     let others = peers.iter().filter(|peer| peer.tasks.contains(&task));
     let theirs = others.clone().map(|peer| Way {
@@ -174,7 +177,7 @@ fn shown(seconds: f64) -> String {
     }
 }
 
-/// Its name, as Linux has it.
+/// The name of the processor, as Linux reports it.
 fn processor() -> String {
     let text = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let line = text.lines().find(|line| line.starts_with("model name"));

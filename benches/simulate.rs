@@ -21,7 +21,7 @@ fn cleat_run(bencher: Bencher<'_, '_>) {
     bencher.bench_local(|| ride(&car, &drive, &Settings::default()).expect("it rides"));
 }
 
-/// The same without a record: what other programs' figures are of.
+/// The same without a record, for comparison with other programs.
 #[divan::bench]
 fn cleat_run_unrecorded(bencher: Bencher<'_, '_>) {
     let (parameters, road) = (parameters(), cleat(0.03));
@@ -41,7 +41,7 @@ fn twelve_cleat_runs(bencher: Bencher<'_, '_>) {
     bencher.bench_local(|| rides(&car, &drives, &Settings::default(), NO_PROGRESS));
 }
 
-/// Parameters that differ: eight sets of the model's unknowns.
+/// Eight different parameter sets.
 fn sets() -> Vec<Vec<f64>> {
     let (own, about) = (parameters(), AxleD.about());
     let changed = |set: usize| {
@@ -55,7 +55,7 @@ fn sets() -> Vec<Vec<f64>> {
     (0..8).map(changed).collect()
 }
 
-/// The twelve standard runs of eight parameter sets, one after the other on one core.
+/// The twelve standard runs of eight parameter sets, one after another on one core.
 #[divan::bench]
 fn ninety_six_rides_alone(bencher: Bencher<'_, '_>) {
     let (sets, all) = (sets(), Standard::all().expect("the standard cleats are roads"));
@@ -71,7 +71,7 @@ fn ninety_six_rides_alone(bencher: Bencher<'_, '_>) {
     });
 }
 
-/// The same abreast on one core, with the ten accelerations kept.
+/// The same side by side on one core, with ten recorded accelerations.
 #[divan::bench]
 fn ninety_six_rides_abreast(bencher: Bencher<'_, '_>) {
     let (sets, all) = (sets(), Standard::all().expect("the standard cleats are roads"));

@@ -1,7 +1,7 @@
-//! The ways to run a model, side by side: generated code, machine code of a file that is read, and the interpreter.
+//! Compares the ways to run a model: generated code, machine code of a file that is read, and the interpreter.
 //!
-//! Each task runs in each way in turn, round by round; the table has the fastest round of each and its ratio to generated code, which
-//! other programs on the machine disturb alike. `docs/benchmarks.md` holds what it prints.
+//! Each task runs in each way in turn, round by round. The table has the fastest round of each and its ratio to
+//! generated code; other programs on the machine disturb both equally. `docs/benchmarks.md` has the output.
 
 mod cleat;
 mod fit;
@@ -20,10 +20,10 @@ use qcar_runtime::model::{Contact, LANES, Model, ResponseMut};
 use qcar_runtime::simulate::{Car, Settings, end_of_ride, ride};
 use subject::{MODEL, Sets, Subject};
 
-/// Of each task in each way.
+/// Number of rounds of each task in each way.
 const ROUNDS: usize = 300;
 
-/// What is timed.
+/// The timed tasks.
 type Work<'a> = Box<dyn FnMut() + 'a>;
 
 fn main() {
@@ -67,7 +67,7 @@ fn compiled(file: &str) -> Compiled {
     from_disk.compiled.expect("the model compiles")
 }
 
-/// How long it takes until all of a model's programs have run once, and until the interpreter could begin.
+/// Prints the time until all programs of a model have run once, and until the interpreter can begin.
 fn translation(name: &str, compiled: &Compiled) {
     let first = (0..20).map(|_| {
         let machine = Machine::new(compiled);
@@ -170,7 +170,7 @@ fn ride_on<'a, M: Model + ?Sized>(car: Car<'a, M>, recorded: bool) -> Work<'a> {
     })
 }
 
-/// Times a task in each way, so many times in a round.
+/// Times a task in each way, `count` times in a round.
 fn row(task: &str, times: u32, mut ways: [Work; 3]) {
     let mut fastest = [Duration::MAX; 3];
     for _ in 0..ROUNDS {

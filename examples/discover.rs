@@ -1,4 +1,4 @@
-//! What the model of a campaign lacks, and the model with it.
+//! Finds the effect that the model of a campaign lacks, and prints the model with it.
 //!
 //! ```text
 //! cargo run --release --example discover -- models/campaigns/axle_c_study
@@ -10,7 +10,7 @@ use std::path::Path;
 use qcar::verbs::discover::discover;
 use qcar_runtime::discover::numbers::Numbers;
 
-/// Searches the campaign that is given, else a small one.
+/// Searches in the given campaign, or in a small one by default.
 pub fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::args().nth(1).filter(|argument| Path::new(argument).is_dir());
     let folder = folder.unwrap_or("models/campaigns/axle_c_study".into());

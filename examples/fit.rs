@@ -9,7 +9,7 @@ use std::path::Path;
 
 use qcar::verbs::fit::{Choices, fit};
 
-/// Fits the campaign that is given, else a small one.
+/// Fits the given campaign, or a small one by default.
 pub fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::args().nth(1).filter(|argument| Path::new(argument).is_dir());
     let folder = folder.unwrap_or("models/campaigns/axle_c_study".into());

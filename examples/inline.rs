@@ -1,4 +1,4 @@
-//! A model in the text of a program: what a softer spring does to it.
+//! A model in the text of a program, and the effect of a softer spring.
 //!
 //! ```text
 //! cargo run --example inline

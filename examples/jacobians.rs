@@ -1,4 +1,4 @@
-//! Matrices and their derivatives by name: which parameter moves the natural vibrations of a quarter car, and how far.
+//! Matrices and their derivatives by name: sensitivity of the natural frequencies of a quarter car to its parameters.
 //!
 //! ```text
 //! cargo run --example jacobians
@@ -12,7 +12,7 @@ use qcar_runtime::nalgebra::{Complex, SMatrix, SVector};
 type Matrix = SMatrix<Complex<f64>, STATES, STATES>;
 type Vector = SVector<Complex<f64>, STATES>;
 
-/// An eigenvalue moves by wᵀ ∂A/∂p v / wᵀv, v and w being its right and left vectors.
+/// The derivative of an eigenvalue is wᵀ ∂A/∂p v / wᵀv, with its right and left eigenvectors v and w.
 pub fn main() -> Result<(), Box<dyn Error>> {
     let p = Parameters::default();
     let (a, slopes) = (state_space(&p).a, jacobians(&p).a);
@@ -32,7 +32,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A vector that the matrix stretches by the eigenvalue: a step of inverse iteration from nearby.
+/// An eigenvector, by a step of inverse iteration.
 fn vector(matrix: Matrix, root: Complex<f64>) -> Vector {
     let near = matrix - Matrix::identity() * (root * (1.0 + 1e-9));
     let start = Vector::from_element(Complex::new(1.0, 0.5));

@@ -1,4 +1,4 @@
-//! A model file that is compiled while the program runs: its natural vibrations.
+//! Compiles a model file at run time and prints its modes.
 //!
 //! ```text
 //! cargo run --example model_file -- models/axles/axle_c.axle
@@ -10,7 +10,7 @@ use std::path::Path;
 use qcar::{catalogue, parameters};
 use qcar_runtime::modes::modes;
 
-/// Shows the modes of the model whose file is given, else of a quarter car.
+/// Prints the modes of the given model file, or of a quarter car by default.
 pub fn main() -> Result<(), Box<dyn Error>> {
     let file = std::env::args().nth(1).filter(|argument| argument.ends_with(".axle"));
     let file = file.unwrap_or("models/axles/quarter_car.axle".into());

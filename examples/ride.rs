@@ -1,4 +1,4 @@
-//! A ride over cleats of three heights: the hardest shock of the body, and how long the tyre is in the air.
+//! Rides over cleats of three heights: largest acceleration of the body, and time for which the tyre is in the air.
 //!
 //! ```text
 //! cargo run --release --example ride

@@ -1,13 +1,12 @@
-//! The error of a model on the whole Silverbox record, of which the repository holds but four periods.
+//! The error of a model on the whole Silverbox record, of which the repository contains four periods.
 //!
 //! ```text
 //! qcar discover models/campaigns/silverbox --out results
 //! cargo run --release --example silverbox -- SNLS80mV.csv results
 //! ```
 //!
-//! The model and its parameters count as they were found, without the delay of the sensor of some microseconds. A sensor has
-//! a zero of its own, which discovery does not ask of the model. Here it is what the model's error is in the mean of the
-//! fitted periods.
+//! The model and its parameters are those of the discovery, without the sensor's delay of some microseconds. The zero
+//! offset of the sensor, which is no parameter of the model, is the mean error of the model over the fitted periods.
 //!
 //! The record is that of T. Wigren and J. Schoukens, "Three free data sets for development and benchmarking in nonlinear
 //! system identification", European Control Conference 2013: columns V1 (taken for N) and V2 (taken for m) at 610.35 Hz.
@@ -22,11 +21,11 @@ use qcar::parameters;
 use qcar_runtime::simulate::{Between, Reading, Recorded, replay};
 use serde_json::Value;
 
-/// Hz.
+/// Sample rate, Hz.
 const RATE: f64 = 610.35;
-/// The growing random signal, less the start, where the circuit did not rest as the model does.
+/// Samples of the growing random signal, without its start, where the circuit was not at rest as the model is.
 const ARROW: Range<usize> = 50..40_000;
-/// The last whole period of the first multisine, how long each is, how far they are apart, and how many they are.
+/// The last whole period of the first multisine, and length, distance and number of the multisines.
 const MULTISINE: usize = 40_973;
 const PERIOD: usize = 8192;
 const SPACING: usize = 8695;

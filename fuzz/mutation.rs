@@ -1,10 +1,10 @@
-//! Files that were damaged at random, for the bounded runs of what the fuzz targets run without end.
+//! Randomly damaged files, for bounded runs of the bodies of the fuzz targets.
 
-/// Numbers that look random and are the same every time (xorshift64*).
+/// Reproducible pseudo-random numbers (xorshift64*).
 pub struct Random(pub u64);
 
 impl Random {
-    /// One of `0..end`.
+    /// A number in `0..end`.
     pub fn below(&mut self, end: usize) -> usize {
         self.0 ^= self.0 >> 12;
         self.0 ^= self.0 << 25;
@@ -13,10 +13,10 @@ impl Random {
     }
 }
 
-/// A few bytes changed, each to what breaks readers; or a piece taken out, doubled, or cut off.
+/// Changes a few bytes to values that often break readers, or removes, repeats or cuts off a piece.
 pub fn mutated(file: &[u8], random: &mut Random) -> Vec<u8> {
     let mut bytes = file.to_vec();
-    // Most of what matters stands at the beginning and at the end.
+    // Most headers and directories are at the beginning or at the end.
     let place = |random: &mut Random, length: usize| match random.below(4) {
         0 => random.below(length),
         1 => length - 1 - random.below(length.min(600)),

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use qcar_dsl::diagnostic::Report;
-use qcar_dsl::disk::{FromDisk, compile_file};
+use qcar_dsl::disk::{CompiledFile, compile_file};
 use qcar_dsl::patch::Patch;
 use qcar_dsl::rust::{module, type_name};
 use qcar_dsl::source::Source;
@@ -44,19 +44,19 @@ fn files(folder: &str) -> Vec<PathBuf> {
 /// A model's module and its entry in the list; mistakes go to cargo.
 fn compile(file: &Path) -> Option<(String, String)> {
     let path = file.display().to_string();
-    let from_disk = match compile_file(Path::new(""), &path) {
-        Ok(from_disk) => from_disk,
+    let compiled_file = match compile_file(Path::new(""), &path) {
+        Ok(compiled_file) => compiled_file,
         Err(reason) => {
             println!("cargo::error={path}: {reason}");
             return None;
         }
     };
-    from_disk
+    compiled_file
         .read
         .iter()
         .for_each(|read| println!("cargo::rerun-if-changed={}", read.source.name));
-    match &from_disk.compiled {
-        Ok(compiled) => Some((module(compiled), entry(&compiled.about.name, &from_disk))),
+    match &compiled_file.compiled {
+        Ok(compiled) => Some((module(compiled), entry(&compiled.about.name, &compiled_file))),
         Err(report) => {
             refuse(report);
             None
@@ -64,9 +64,9 @@ fn compile(file: &Path) -> Option<(String, String)> {
     }
 }
 
-/// `Shipped { … }`: the module's type, and the texts that it comes from.
-fn entry(name: &str, from_disk: &FromDisk) -> String {
-    let mut texts = from_disk
+/// `Shipped { … }`: the module's type, and its source texts.
+fn entry(name: &str, compiled_file: &CompiledFile) -> String {
+    let mut texts = compiled_file
         .read
         .iter()
         .map(|read| (&read.written, included(&read.source.name)));
@@ -80,13 +80,13 @@ fn entry(name: &str, from_disk: &FromDisk) -> String {
     )
 }
 
-/// The text of a file of this package, put into the program.
+/// The text of a file of this package, as an expression.
 fn included(path: &str) -> String {
     let below = format!("/{path}");
     format!("include_str!(concat!(env!(\"CARGO_MANIFEST_DIR\"), {below:?}))")
 }
 
-/// `ShippedEffect { … }`: an effect that reads well; mistakes go to cargo.
+/// `ShippedEffect { … }`: a valid effect; mistakes go to cargo.
 fn effect(file: &Path) -> Option<String> {
     let name = file.display().to_string();
     let text = std::fs::read_to_string(file).expect("a file that was listed can be read");
@@ -108,7 +108,7 @@ fn effect(file: &Path) -> Option<String> {
     }
 }
 
-/// Tells cargo what is wrong, in lines and as it reads best.
+/// Prints a report, as lines for cargo and in full.
 fn refuse(report: &Report) {
     report
         .compact()

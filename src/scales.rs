@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 use qcar_dsl::check::Checked;
 use qcar_dsl::compile::derive;
 use qcar_dsl::evaluate::Evaluator;
-use qcar_dsl::patch::{Scale, watched};
+use qcar_dsl::patch::{Scale, with_all_outputs};
 use qcar_runtime::campaign::{Quantity as Measured, Role};
 use qcar_runtime::discover::Evidence;
 use qcar_runtime::discover::observe::{Kind, Run, Stimulus, signal_of};
@@ -36,7 +36,7 @@ struct Driven<'a> {
 /// Largest amplitude of each part in the fitted runs, by the name of its reference value. Parts without motion are left
 /// out, and so are all parts if the model lacks a value.
 pub fn scales(model: &Checked, values: &BTreeMap<String, f64>, evidence: &Evidence) -> BTreeMap<String, f64> {
-    let Ok(shown) = watched(model) else {
+    let Ok(shown) = with_all_outputs(model) else {
         return BTreeMap::new();
     };
     let shown = Evaluator::new(&derive(shown));

@@ -11,7 +11,7 @@ use qcar_runtime::tyre::{Geometry, Rates, Tyre};
 
 pub use track::{cleat, drive};
 
-/// Of the unloaded tyre, m.
+/// Radius of the unloaded tyre, m.
 pub const RADIUS: f64 = 0.324;
 const STATIC_DEFLECTION: f64 = 0.03102;
 const LOAD: f64 = 5749.6;
@@ -56,12 +56,12 @@ pub fn parameters() -> Values {
     Values::resolve(AxleD.about(), &given, &Default::default()).expect("every parameter has a value")
 }
 
-/// It on its tyre.
+/// The car on its tyre.
 pub fn car(parameters: &Values) -> Car<'_, AxleD> {
     on_tyre(&AxleD, parameters)
 }
 
-/// The same by another program of its model.
+/// The same car with another implementation of its model.
 pub fn on_tyre<'a, M: Model + ?Sized>(model: &'a M, parameters: &'a Values) -> Car<'a, M> {
     let tyre = Tyre::new(RADIUS, STATIC_DEFLECTION, Geometry::Area, Rates::AtStaticDeflection).expect("a tyre");
     Car {

@@ -1,4 +1,4 @@
-//! Programs that do the same work: how they are built, and asked on their standard input.
+//! Programs that do the same work: they are built here, and get commands on their standard input.
 
 use std::cell::RefCell;
 use std::fs;
@@ -9,18 +9,18 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use crate::rides;
 use crate::subject::{MODEL, Subject};
 
-/// Where they are built.
+/// The folder in which they are built.
 const FOLDER: &str = "target/peers";
 
-/// As a user who wants speed compiles, but that products and sums stay apart, as they do in qcar.
+/// Compiler options for speed, but without fused multiplication and addition, as in qcar.
 const FLAGS: [&str; 4] = ["-std=c++20", "-O3", "-march=native", "-ffp-contract=off"];
 
-/// One that runs and waits to be asked.
+/// A running program that waits for commands.
 pub struct Peer {
     pub name: &'static str,
-    /// What it is asked for.
+    /// Its task.
     pub tasks: &'static [&'static str],
-    /// How many parameter sets it has matrices of at once.
+    /// Number of parameter sets that it computes together.
     pub lanes: usize,
     talk: RefCell<Talk>,
 }
@@ -31,7 +31,7 @@ struct Talk {
     from: BufReader<ChildStdout>,
 }
 
-/// All that could be built, and why others could not.
+/// The programs that could be built, and why others could not.
 pub fn all() -> (Vec<Peer>, Vec<String>) {
     fs::create_dir_all(FOLDER).expect("a folder in target");
     let all = &["matrices", "response", "fit"];
@@ -74,7 +74,7 @@ fn cpp(name: &str, source: &str, flags: &[&str], last: &[&str]) -> Result<Comman
     Ok(Command::new(program))
 }
 
-/// CasADi writes its C, which is compiled by itself.
+/// CasADi's generated C, compiled separately.
 fn casadi() -> Result<Command, String> {
     run(
         Command::new(python()).args(["benches/peers/casadi_model.py", FOLDER]),
@@ -99,7 +99,7 @@ fn scipy() -> Result<Command, String> {
     Ok(program)
 }
 
-/// That of the tests, where it is there.
+/// The Python of the tests, if it exists.
 fn python() -> PathBuf {
     let own = Path::new("target/python/bin/python");
     if own.exists() { own.into() } else { "python3".into() }
@@ -116,7 +116,7 @@ fn run(command: &mut Command, name: &str) -> Result<(), String> {
     }
 }
 
-/// The parameters of the subject, as programs are told them.
+/// The parameters of the subject, as text for the programs.
 fn subject() -> Vec<String> {
     let parameters = MODEL.about().parameters.iter().zip(Subject::new(MODEL).p);
     parameters
@@ -124,7 +124,7 @@ fn subject() -> Vec<String> {
         .collect()
 }
 
-/// Starts a program and tells it what its work is of.
+/// Starts a program and sends it the data of its task.
 fn start(
     name: &'static str,
     tasks: &'static [&'static str],
@@ -153,19 +153,19 @@ fn start(
 }
 
 impl Peer {
-    /// Tells it something more.
+    /// Sends it further data.
     pub fn tell(&self, line: &str) {
         self.talk.borrow_mut().say(line);
     }
 
-    /// Seconds of processor time that it takes for so many.
+    /// Seconds of processor time for `count` runs.
     pub fn time(&self, task: &str, count: usize) -> f64 {
         let mut talk = self.talk.borrow_mut();
         talk.say(&format!("time {task} {count}"));
         talk.line().parse().expect("a time")
     }
 
-    /// Its results, line by line, word by word.
+    /// Its results as words, line by line.
     pub fn shown(&self, task: &str) -> Vec<Vec<String>> {
         let mut talk = self.talk.borrow_mut();
         talk.say(&format!("show {task}"));
@@ -191,7 +191,7 @@ impl Talk {
 
 impl Drop for Talk {
     fn drop(&mut self) {
-        // It is of no use any more, and one that has ended by itself is gone.
+        // The program is no longer needed; an error means that it has already ended.
         let _ = self.child.kill().and_then(|()| self.child.wait());
     }
 }

@@ -1,4 +1,5 @@
-//! How far the results of others are from qcar's: each relative to the largest by the same parameter, of the same output.
+//! Differences of the results of other programs from those of qcar, each relative to the largest result for the same
+//! parameter and the same output.
 
 use std::collections::BTreeMap;
 
@@ -7,16 +8,16 @@ use qcar_runtime::model::Matrix;
 use crate::child::Peer;
 use crate::subject::{MODEL, Subject};
 
-/// What no two right programs differ by: far more than rounding, far less than a wrong term.
+/// Largest allowed difference: far larger than rounding, far smaller than a wrong term.
 const WRONG: f64 = 1e-6;
 
-/// Results by what they are, each with its scale.
+/// Results by name, each with its scale.
 type Results = BTreeMap<String, (f64, f64)>;
 
 /// The largest difference, as text.
 ///
 /// # Panics
-/// Where it is no matter of rounding: then the peer does not do the same work.
+/// If it is larger than rounding explains: then the other program does not do the same work.
 pub fn difference(task: &str, peer: &Peer) -> String {
     let want = match task {
         "matrices" => matrices(),
@@ -30,7 +31,7 @@ pub fn difference(task: &str, peer: &Peer) -> String {
     };
     let largest = want.iter().map(compared).fold(0.0, f64::max);
     assert!(largest < WRONG, "{} differs by {largest:e} in {task}", peer.name);
-    // What qcar leaves out is nothing, beside what it has by the same parameter.
+    // A result that qcar leaves out is zero, relative to others for the same parameter.
     let scale = |key: &str| {
         want.iter()
             .find(|(own, _)| parameter(own) == parameter(key))
@@ -43,12 +44,12 @@ pub fn difference(task: &str, peer: &Peer) -> String {
     format!("{largest:.0e}")
 }
 
-/// The third word of what a result is: the parameter by which it is a derivative.
+/// The third word of the name of a result: the parameter of the derivative.
 fn parameter(key: &str) -> Option<&str> {
     key.split(' ').nth(2)
 }
 
-/// What the peer says, where shares of one entry are added up.
+/// The results of the other program; contributions to one entry are summed.
 fn found(task: &str, lines: Vec<Vec<String>>) -> BTreeMap<String, f64> {
     let numbers = if task == "response" { 2 } else { 1 };
     let mut found = BTreeMap::new();
@@ -122,7 +123,7 @@ fn response() -> Results {
     results
 }
 
-/// The parameters that are found.
+/// The fitted parameters.
 fn parameters() -> Results {
     let known = MODEL.about().parameters.iter().zip(Subject::new(MODEL).p);
     let free = known.filter(|(about, _)| !about.known);

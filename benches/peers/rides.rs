@@ -8,14 +8,15 @@ use qcar_runtime::simulate::{AntiAlias, Drive, Kept, Method, Ridden, Settings, e
 use crate::child::Peer;
 use crate::cleat;
 
-/// m/s.
+/// Speed, m/s.
 const SPEED: f64 = 30.0 / 3.6;
-/// Of the ride that is timed, and of two that end on the cleat and soon after it.
+/// Durations of the timed ride, and of two that end on the cleat and soon after it.
 const SAMPLES: usize = 1001;
 const PROBES: [usize; 3] = [200, 350, SAMPLES];
-/// Of those that others are held against.
+/// Settings of the rides with which other programs are compared.
 const EXACT: f64 = 1e-10;
-/// Far more than the tolerance adds up to, in parts of 1 cm and 0.1 m/s, and far less than a wrong term.
+/// Largest allowed difference, relative to 1 cm and 0.1 m/s: far larger than the accumulated tolerance, far smaller
+/// than a wrong term.
 const WRONG: f64 = 1e-2;
 
 fn road() -> Road {
@@ -29,18 +30,18 @@ fn drive(road: &Road, samples: usize) -> Drive<'_> {
     }
 }
 
-/// When a recording of so many samples ends with its filter, s.
+/// End of a recording of `samples` samples with its filter, s.
 fn end(samples: usize) -> f64 {
     (samples - 1 + AntiAlias::REACH) as f64 / cleat::drive(&road(), SPEED).sample_rate
 }
 
-/// What a program is told of car, tyre and road.
+/// Car, tyre and road as text for a program.
 pub fn told() -> Vec<String> {
     let (parameters, road) = (cleat::parameters(), road());
     let of_model = AxleD.about().parameters.iter().zip(parameters.as_slice());
     let set = |name: &str, value: f64| format!("set {name} {value:?}");
     let vertices = road.vertices();
-    // The circle reaches the step no earlier than with its foremost point.
+    // The circle cannot reach the step before its foremost point does.
     let uneven = vertices.windows(2).find(|pair| pair[0][1] != pair[1][1]);
     let start = (uneven.expect("a cleat")[0][0] - cleat::RADIUS) / SPEED;
     let of_ride = [
@@ -57,7 +58,7 @@ pub fn told() -> Vec<String> {
         .collect()
 }
 
-/// The work of a ride alone.
+/// The work of a single ride.
 pub fn alone<M: Model + ?Sized>(model: &M) -> impl FnMut() {
     let (parameters, road) = (cleat::parameters(), road());
     move || {
@@ -67,12 +68,12 @@ pub fn alone<M: Model + ?Sized>(model: &M) -> impl FnMut() {
     }
 }
 
-/// Of each lane so many rides, one after the other.
+/// Number of rides in each lane, one after another.
 const EACH: usize = 4;
-/// How many there are.
+/// Number of rides.
 pub const ABREAST: usize = EACH * LANES;
 
-/// The work of several rides abreast, without records: axles whose tyres differ by some percent.
+/// The work of several rides side by side, without records: axles whose tyres differ by some percent.
 pub fn abreast<M: Model + ?Sized>(model: &M) -> impl FnMut() {
     let (parameters, road) = (cleat::parameters(), road());
     let tyre = model.about().parameters.iter().position(|own| own.name == "k_tire");
@@ -97,10 +98,10 @@ pub fn abreast<M: Model + ?Sized>(model: &M) -> impl FnMut() {
     }
 }
 
-/// By how much a program's states are off at worst, in parts of 1 cm and 0.1 m/s, over all ends.
+/// Largest difference of a program's final states over all rides, relative to 1 cm and 0.1 m/s.
 ///
 /// # Panics
-/// Where that is no matter of the tolerance.
+/// If the difference is larger than the tolerance explains.
 pub fn difference(peer: Option<&Peer>) -> String {
     let worst = PROBES.into_iter().map(|samples| {
         let exact = states(samples, EXACT);
@@ -127,7 +128,7 @@ pub fn difference(peer: Option<&Peer>) -> String {
     format!("{worst:.0e}")
 }
 
-/// NaN where one is, so that nothing is taken for right that is no number.
+/// The larger number; NaN if one is NaN, so that a NaN is not accepted.
 fn larger(a: f64, b: f64) -> f64 {
     if a >= b || a.is_nan() { a } else { b }
 }
@@ -136,7 +137,7 @@ fn number(word: &str) -> f64 {
     word.parse().expect("a number")
 }
 
-/// The states at the end of so many samples, by mass, axis and order.
+/// The states after `samples` samples, by mass, axis and order.
 fn states(samples: usize, tolerance: f64) -> Vec<(String, f64)> {
     let (parameters, road) = (cleat::parameters(), road());
     let settings = Settings {

@@ -1,4 +1,4 @@
-//! What is measured: the five vertical masses of axle_d at three hundred lines.
+//! The subject of the benchmarks: the five vertical masses of axle_d at three hundred lines.
 
 use std::ops::{Deref, DerefMut};
 
@@ -6,21 +6,21 @@ use qcar_runtime::model::{LANES, Lanes, Model, ResponseMut};
 
 qcar_derive::axle_file!("benches/subject/axle_d_z.axle");
 
-/// Behind the seam, as the workbench sees it.
+/// The model as the workbench uses it, through its trait.
 pub const MODEL: &dyn Model = &axle_d_z::AxleDZ;
 
-/// Places of inputs and outputs for a call through the seam.
+/// Buffers of inputs and outputs for calls of the trait.
 pub struct Subject<'a> {
     model: &'a dyn Model,
     /// A parameter set.
     pub p: Vec<f64>,
-    /// What it prepares to.
+    /// Its constants.
     pub constants: Vec<f64>,
     /// A state.
     pub x: Vec<f64>,
     /// An input.
     pub u: Vec<f64>,
-    /// rad/s
+    /// Angular frequencies, rad/s.
     pub omega: Vec<f64>,
     /// The nonzeros of A, B, C and D.
     pub matrices: Vec<f64>,
@@ -31,7 +31,7 @@ pub struct Subject<'a> {
 }
 
 impl<'a> Subject<'a> {
-    /// Room for everything, and a plausible axle.
+    /// Buffers, and a plausible axle.
     pub fn new(model: &'a dyn Model) -> Self {
         let about = model.about();
         let p = about
@@ -93,17 +93,17 @@ pub struct Sets<'a> {
     u: Rows,
     /// The nonzeros of A, B, C and D.
     pub matrices: Rows,
-    /// Those of their parameter Jacobians.
+    /// The nonzeros of their parameter Jacobians.
     pub sensitivities: Rows,
     omega: Vec<f64>,
     /// The response to the pad with its Jacobian, of [`AT_ONCE`] lines.
     response: Rows,
 }
 
-/// So many lines of a response of several sets fit into the L1 cache.
+/// Number of lines of a response of several sets that fit into the L1 cache.
 const AT_ONCE: usize = 4;
 
-/// Rows that begin at a line of the cache, so that the widest vectors are each of one line.
+/// Rows aligned to cache lines, so that each of the widest vectors is in one line.
 pub struct Rows {
     memory: Vec<f64>,
     start: usize,
@@ -134,7 +134,7 @@ impl DerefMut for Rows {
 }
 
 impl<'a> Sets<'a> {
-    /// Room for everything, and plausible axles.
+    /// Buffers, and plausible axles.
     pub fn new(model: &'a dyn Model) -> Self {
         let about = model.about();
         let row = |p: &f64| std::array::from_fn(|set| p * (1.0 + 0.01 * set as f64));
@@ -172,7 +172,7 @@ impl<'a> Sets<'a> {
     }
 }
 
-/// Hz, logarithmic from 0.5 to 30.
+/// Frequencies, Hz, logarithmic from 0.5 to 30.
 pub fn frequency(line: usize) -> f64 {
     0.5 * 60f64.powf(line as f64 / 299.0)
 }

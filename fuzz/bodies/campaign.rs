@@ -1,4 +1,4 @@
-//! Whatever stands in the files of a campaign, it opens and its runs are read, or it is refused with a message.
+//! Whatever its files contain, a campaign is opened and its runs are read, or it is refused with a message.
 
 use std::fs;
 use std::path::Path;
@@ -81,17 +81,17 @@ pub const TABLE: &str = "time,pad_left_z,body_left_z,displacement,velocity,force
 0.03,0.1,-0.1,0.001,-0.1,30,2,0,0
 ";
 
-/// Fails where a manifest makes the reader panic.
+/// Fails if a manifest makes the reader panic.
 pub fn survives_campaign(manifest: &[u8]) {
     opened(manifest, TABLE.as_bytes());
 }
 
-/// Fails where a table of samples makes the reader panic.
+/// Fails if a table of samples makes the reader panic.
 pub fn survives_table(table: &[u8]) {
     opened(MANIFEST.as_bytes(), table);
 }
 
-/// Fails where the workbook of a vehicle makes the reader panic.
+/// Fails if the workbook of a vehicle makes the reader panic.
 pub fn survives_workbook(bytes: &[u8]) {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("vehicle.xlsx");
@@ -107,7 +107,7 @@ fn opened(manifest: &[u8], table: &[u8]) {
     told(read(folder.path()));
 }
 
-/// A campaign and all that its runs hold.
+/// Reads a campaign and all of its runs.
 fn read(folder: &Path) -> Result<(), InputError> {
     let campaign = Campaign::open(folder)?;
     for run in &campaign.runs {
@@ -125,7 +125,7 @@ fn read(folder: &Path) -> Result<(), InputError> {
     Ok(())
 }
 
-/// A refusal says something.
+/// Checks that a refusal has a message.
 fn told(outcome: Result<(), InputError>) {
     if let Err(error) = outcome {
         assert!(!error.to_string().is_empty());

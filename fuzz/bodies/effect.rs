@@ -1,4 +1,4 @@
-//! Whatever an effect file holds, it applies, or is refused with a message; and what it makes of a model is a model.
+//! Whatever an effect file contains, it applies or is refused with a message; the patched model is a valid model.
 
 use qcar_dsl::check::Checked;
 use qcar_dsl::check::check_text;
@@ -44,7 +44,7 @@ pub fn bench() -> Checked {
     check_text(source, &|_, _| Err(String::new())).unwrap_or_else(|report| panic!("{report}"))
 }
 
-/// Fails where an effect makes the compiler panic, or where it makes a model that the compiler refuses.
+/// Fails if an effect makes the compiler panic, or if the compiler refuses the patched model.
 pub fn survives(text: &str) {
     let source = Source {
         name: "fuzz.axle".to_string(),

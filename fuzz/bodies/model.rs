@@ -1,16 +1,17 @@
-//! Whatever a model file holds, it compiles or is refused with a message; and what can be read prints as the same tree.
+//! Whatever a model file contains, it compiles or is refused with a message; the printed form of a readable file has
+//! the same tree.
 
 use qcar_dsl::check::check_members;
 use qcar_dsl::compile::compile;
 use qcar_dsl::parse::parse_text;
 use qcar_dsl::source::Source;
 
-/// No file but the one at hand can be loaded.
+/// No other file can be loaded.
 fn nothing(_: &str, _: &str) -> Result<Source, String> {
     Err("there are no files".to_string())
 }
 
-/// Fails where the compiler panics, or contradicts itself.
+/// Fails if the compiler panics or contradicts itself.
 pub fn survives(text: &str) {
     let source = Source {
         name: "fuzz.axle".to_string(),

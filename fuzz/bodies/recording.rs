@@ -1,9 +1,9 @@
-//! Whatever a measured file holds, it is read into whole channels, or refused with a message.
+//! Whatever a measured file contains, it is read into complete channels or refused with a message.
 
 use qcar_signals::read::recognise;
 use qcar_signals::signal::{Recording, TimeBase};
 
-/// Fails where a reader panics, or gives a channel that is not as long as its times.
+/// Fails if a reader panics, or if a channel and its times differ in length.
 pub fn survives(bytes: &[u8]) {
     match recognise(bytes) {
         Ok(recording) => whole(&recording),

@@ -1,5 +1,5 @@
-//! The axle models that qcar ships, compiled: a module for each file of `axles/`, and a list of them. And the texts of the
-//! effects that may be missing in a model: the files of `effects/`, and, of no cause in particular, those of `laws/`.
+//! The compiled axle models that qcar ships: a module for each file of `axles/`, and a list of them. Also the texts of
+//! the effects that a model may lack (`effects/`), and of laws without a physical cause (`laws/`).
 
 use qcar_runtime::model::Model;
 
@@ -46,8 +46,8 @@ pub fn effects() -> &'static [ShippedEffect] {
     EFFECTS
 }
 
-/// All laws that name no cause, by name: curves of travel, speed or frequency whose coefficients are free, for where no
-/// effect explains what a model leaves.
+/// All laws without a physical cause, by name: curves over travel, speed or frequency with free coefficients, for
+/// residuals that no effect explains.
 pub fn laws() -> &'static [ShippedEffect] {
     LAWS
 }

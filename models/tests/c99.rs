@@ -12,7 +12,7 @@ use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::schedule::Compiled;
 use qcar_runtime::model::{About, Contact, Model as _, ResponseMut};
 
-/// Nothing is contracted, so every operation rounds as in the evaluator.
+/// No operations are fused, so every operation rounds as in the evaluator.
 const FLAGS: [&str; 7] = [
     "-std=c99",
     "-Wall",
@@ -43,7 +43,7 @@ fn every_operation_and_every_law_gives_the_same_bits_in_c() {
 
 fn compare_all(files: &[String]) {
     if Command::new("gcc").arg("--version").output().is_err() {
-        // Past the capture of the test's output.
+        // Written directly, since the test harness captures standard output.
         let mut out = std::io::stderr();
         writeln!(
             out,
@@ -101,7 +101,7 @@ fn compare(file: &str, compiled: &Compiled) {
     }
 }
 
-/// What a function is given.
+/// The arguments of a function.
 struct Point {
     p: Vec<f64>,
     x: Vec<f64>,
@@ -135,7 +135,7 @@ impl Point {
         [&self.p[..], &self.x, &self.u, &[self.omega], &self.contact].concat()
     }
 
-    /// What the program in C writes, but for the kinks.
+    /// The output of the C program, without the kinks.
     fn evaluate(&self, evaluator: &Evaluator, into: &mut Vec<f64>) {
         let about = evaluator.about();
         let Point { p, x, u, .. } = self;
@@ -183,7 +183,7 @@ impl Point {
     }
 }
 
-/// Compiles a model with a program that reads points and writes what each function gives.
+/// Compiles a model with a program that reads points and writes the results of each function.
 fn built(compiled: &Compiled, folder: &Path) -> std::path::PathBuf {
     let about = &compiled.about;
     let values = vec![1.0; about.parameters.len()];

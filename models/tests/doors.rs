@@ -7,7 +7,7 @@ use qcar_dsl::disk::compile_file;
 use qcar_dsl::rust::module;
 use qcar_runtime::response::parameters::Values;
 
-/// The door of inline text.
+/// The model as inline text.
 mod inline {
     qcar_derive::axle! {
         // Thesis table 4.4.
@@ -17,7 +17,7 @@ mod inline {
     }
 }
 
-/// The door of a file.
+/// The model as a file.
 mod file {
     qcar_derive::axle_file!("axles/axle_c.axle");
 }
@@ -61,7 +61,7 @@ fn the_parameters_of_a_generated_model_are_an_array_and_back() {
     assert_eq!(Parameters::NAMES[0], models::quarter_car::ABOUT.parameters[0].name);
 }
 
-/// As the workbench takes them from the model's description.
+/// The matrices as the workbench builds them from the model's description.
 #[test]
 fn the_default_of_parameters_is_that_of_the_model() {
     use models::quarter_car::{ABOUT, Parameters};
@@ -69,7 +69,7 @@ fn the_default_of_parameters_is_that_of_the_model() {
     assert_eq!(Parameters::default().to_array().as_slice(), resolved.as_slice());
 }
 
-/// Each against a difference of the matrices themselves, whose error is some 1e-9 of the largest entry.
+/// Compares each with a difference quotient of the matrices, whose error is about 1e-9 of the largest entry.
 #[test]
 fn derivatives_by_name_are_limits_of_differences() {
     use models::quarter_car::{PARAMETERS, Parameters, jacobians, state_space};

@@ -7,14 +7,14 @@ use qcar_dsl::disk::compile_file;
 use qcar_dsl::evaluate::Evaluator;
 use qcar_runtime::model::{Contact, Contacts, LANES, Lanes, Model, Points, ResponseMut};
 
-/// Models that no axle is: every operation of the language, nodes, inner states, levers and rotation.
+/// Models other than axles: every operation of the language, nodes, inner states, levers and rotation.
 mod zoo {
     qcar_derive::axle_file!("tests/zoo/coupled.axle");
     qcar_derive::axle_file!("tests/zoo/forces.axle");
     qcar_derive::axle_file!("tests/zoo/laws.axle");
     qcar_derive::axle_file!("tests/zoo/mechanisms.axle");
     qcar_derive::axle_file!("tests/zoo/names.axle");
-    // With an effect in it.
+    // A model with an effect.
     qcar_derive::axle_file!("tests/zoo/axle_b_with_coulomb_friction.axle");
     qcar_derive::axle_file!("tests/zoo/axle_c_with_suspended_mass.axle");
     qcar_derive::axle_file!("tests/zoo/axle_c_with_tire_dynamic_stiffness.axle");
@@ -118,7 +118,7 @@ impl Pair {
         self.compare_rolling(c, &x, &u, numbers);
     }
 
-    /// Several parameter sets at once, each with its own state and input: what each gives alone.
+    /// Several parameter sets at once, each with its own state and input, give the results of each set alone.
     fn compare_sets(&self, sets: &dyn Model, p: &[f64], x: &[f64], u: &[f64]) {
         let about = self.model.about();
         let row = |(place, value): (usize, &f64)| -> Lanes {
@@ -179,7 +179,7 @@ impl Pair {
         }
     }
 
-    /// Thirty-five points: whole blocks and a rest. Generated code sees one after the other.
+    /// Thirty-five points: whole blocks and a remainder. Generated code computes them one by one.
     fn compare_points(&self, constants: &[f64], p: &[f64], numbers: &[f64]) {
         const COUNT: usize = 35;
         let (about, generated, interpreted) = (self.model.about(), self.model, &self.evaluator);
@@ -265,7 +265,7 @@ fn split(to: &mut [f64], n: usize, m: usize) -> Parts<'_> {
     (re, im, rest.split_at_mut(m))
 }
 
-/// Both results, bit for bit; not-a-number is like any other.
+/// Compares both results bit by bit; all NaN count as equal.
 fn equal(length: usize, generated: impl Fn(&mut [f64]), interpreted: impl Fn(&mut [f64])) -> Vec<f64> {
     let [mut one, mut other] = [vec![0.0; length], vec![0.0; length]];
     generated(&mut one);

@@ -1,4 +1,4 @@
-//! A model with an effect in it is a file like any other: the same bytes every time, and code that the compiler takes.
+//! A model with an effect is a file like any other: it has the same bytes every time, and it compiles.
 
 use std::path::Path;
 

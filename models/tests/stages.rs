@@ -1,4 +1,4 @@
-//! What people see of each shipped model, stage by stage, pinned.
+//! Snapshots of each stage of each shipped model, as a user sees it.
 
 use std::path::Path;
 
@@ -62,7 +62,7 @@ fn shipped() -> impl Iterator<Item = (&'static str, Compiled)> {
     })
 }
 
-/// The documentation and the heads of a module, and its `FINGERPRINT`.
+/// The documentation and the function signatures of a module, and its `FINGERPRINT`.
 fn outline(text: &str) -> String {
     let is_head = |line: &&str| {
         let line = line.trim_start();

@@ -1,4 +1,4 @@
-//! The macro doors of the axle compiler: a model in the text of a program, or in a file of its package.
+//! The macros of the axle compiler, for a model in the text of a program or in a file of its package.
 //!
 //! Both expand to the module that `qcar_dsl::rust` prints; the crate that uses them depends on `qcar-runtime`.
 
@@ -6,12 +6,12 @@ use std::path::PathBuf;
 
 use proc_macro2::TokenStream;
 use qcar_dsl::compile::compile_tokens;
-use qcar_dsl::disk::{Files, Read, compile_file};
+use qcar_dsl::disk::{Files, LoadedFile, compile_file};
 use qcar_dsl::rust::module;
 use quote::{quote, quote_spanned};
 use syn::{LitStr, parse_macro_input};
 
-/// Compiles an axle that is written in place; the path of a family is relative to the package.
+/// Compiles an axle that is written inline; the path of a family is relative to the package.
 ///
 /// ```
 /// qcar_derive::axle! {
@@ -52,8 +52,8 @@ pub fn axle_file(tokens: proc_macro::TokenStream) -> proc_macro::TokenStream {
     let literal = parse_macro_input!(tokens as LitStr);
     let path = literal.value();
     let error = |message: String| quote_spanned!(literal.span()=> ::core::compile_error!(#message););
-    let from_disk = match compile_file(&package(), &path) {
-        Ok(from_disk) => from_disk,
+    let compiled_file = match compile_file(&package(), &path) {
+        Ok(compiled_file) => compiled_file,
         Err(reason) => {
             return error(format!(
                 "{path}: {reason}; write the path of a model file in this package"
@@ -61,11 +61,11 @@ pub fn axle_file(tokens: proc_macro::TokenStream) -> proc_macro::TokenStream {
             .into();
         }
     };
-    let expanded = match from_disk.compiled {
+    let expanded = match compiled_file.compiled {
         Ok(compiled) => rust(&module(&compiled)),
         Err(report) => error(format!("{}\n{report}", report.compact())),
     };
-    let watched = watch(&from_disk.read);
+    let watched = watch(&compiled_file.read);
     quote!(#expanded #watched).into()
 }
 
@@ -78,8 +78,8 @@ fn rust(text: &str) -> TokenStream {
     text.parse().expect("a generated module is Rust")
 }
 
-/// rustc knows which files an `include_bytes!` reads, and compiles again when they change.
-fn watch(read: &[Read]) -> TokenStream {
+/// Makes rustc watch the files: it compiles again if a file of an `include_bytes!` changes.
+fn watch(read: &[LoadedFile]) -> TokenStream {
     let files = read
         .iter()
         .map(|read| package().join(&read.source.name).display().to_string());

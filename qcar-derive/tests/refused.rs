@@ -1,10 +1,10 @@
-//! Refused models: rustc draws its caret at the mistaken token, and all mistakes come out together.
+//! Refused models: rustc marks the wrong token, and all mistakes are reported together.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Where `axle_file!` looks for models.
+/// The folder in which `axle_file!` searches for models.
 const CASES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/refused");
 
 #[test]
@@ -31,7 +31,7 @@ fn mistakes_are_shown_where_they_are() {
     }
 }
 
-/// Each has a macro with mistakes.
+/// Programs that each use a macro with mistakes.
 fn cases() -> Vec<String> {
     let files = fs::read_dir(CASES).unwrap().map(|file| file.unwrap().path());
     let programs = files.filter(|file| file.extension().is_some_and(|own| own == "rs"));
@@ -42,8 +42,8 @@ fn cases() -> Vec<String> {
     names
 }
 
-/// The library of the macro, beside this test. Cargo has brought one up to date just now, so that also one which it built
-/// later, with other features, is of the present sources.
+/// The library of the macro, beside this test. Cargo has just updated one, so the newest one, even with other features,
+/// is built from the present sources.
 fn built_last() -> PathBuf {
     let test = std::env::current_exe().unwrap();
     let beside = fs::read_dir(test.parent().unwrap()).unwrap();

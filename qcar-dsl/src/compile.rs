@@ -7,7 +7,7 @@ use crate::check::{check_text, check_tokens};
 use crate::derive::alone::alone;
 use crate::derive::describe::{describe, vectors};
 use crate::derive::response::Wanted;
-use crate::derive::{linear, motion, response, visible};
+use crate::derive::{identifiability, linear, motion, response};
 use crate::diagnostic::Report;
 use crate::program::schedule::{Compiled, schedule};
 use crate::source::{Load, Source};
@@ -17,7 +17,7 @@ use crate::source::{Load, Source};
 /// # Errors
 /// Fails with the report of every mistake.
 pub fn check(source: Source, load: Load) -> Result<Checked, Report> {
-    check_text(source, load).map(visible::look)
+    check_text(source, load).map(identifiability::with_identifiability)
 }
 
 /// Compiles a model file.
@@ -61,7 +61,7 @@ pub fn derive_wanted(model: Checked, wanted: Wanted) -> Compiled {
     let motion = motion::derive(&model, &mut graph);
     let rolling = motion::rolling_tyre(&model).map(|tyre| (motion::derive_rolling(&model, &mut graph, &tyre), tyre));
     let linear = linear::linearise(&model, &motion, &mut graph);
-    let model = visible::look_at_derived(model, graph.clone(), &motion, &linear);
+    let model = identifiability::with_derived_identifiability(model, graph.clone(), &motion, &linear);
     let responses = if linear.linear {
         response::responses(&model, &mut graph, wanted)
     } else {

@@ -9,40 +9,40 @@ use crate::diagnostic::Report;
 use crate::program::schedule::Compiled;
 use crate::source::Source;
 
-/// A model file compiled, and what was read for it.
-pub struct FromDisk {
+/// The result of compiling a model file, with the files that were read.
+pub struct CompiledFile {
     /// The model, or every mistake in its files.
     pub compiled: Result<Compiled, Report>,
-    /// What was read, the model file first. A door has it watched.
-    pub read: Vec<Read>,
+    /// The files that were read, the model file first. A build script or macro makes Cargo watch them.
+    pub read: Vec<LoadedFile>,
 }
 
 /// A file that was read.
 #[derive(Clone, Debug)]
-pub struct Read {
+pub struct LoadedFile {
     /// The path as the model writes it.
     pub written: String,
-    /// Its text; its name is the path relative to the folder of the door.
+    /// Its text; its name is the path relative to the folder.
     pub source: Source,
 }
 
-/// Compiles a model file of a folder, such as a package.
+/// Compiles a model file in a folder, such as that of a package.
 ///
 /// # Errors
-/// The reason why the file itself cannot be read.
-pub fn compile_file(folder: &Path, path: &str) -> Result<FromDisk, String> {
+/// Fails with the reason why the model file itself cannot be read.
+pub fn compile_file(folder: &Path, path: &str) -> Result<CompiledFile, String> {
     compile_file_wanted(folder, path, Wanted::Jacobian)
 }
 
-/// The same with what is wanted of the responses.
+/// The same with the wanted responses only.
 ///
 /// # Errors
-/// As [`compile_file`].
-pub fn compile_file_wanted(folder: &Path, path: &str, wanted: Wanted) -> Result<FromDisk, String> {
+/// Fails as [`compile_file`] does.
+pub fn compile_file_wanted(folder: &Path, path: &str, wanted: Wanted) -> Result<CompiledFile, String> {
     let files = Files::new(folder);
     let source = files.read(PathBuf::from(path), path)?;
     let compiled = compile_wanted(source, &|asking, written| files.load(asking, written), wanted);
-    Ok(FromDisk {
+    Ok(CompiledFile {
         compiled,
         read: files.finish(),
     })
@@ -51,11 +51,11 @@ pub fn compile_file_wanted(folder: &Path, path: &str, wanted: Wanted) -> Result<
 /// The files of a folder, as a loader of the compiler.
 pub struct Files {
     folder: PathBuf,
-    read: RefCell<Vec<Read>>,
+    read: RefCell<Vec<LoadedFile>>,
 }
 
 impl Files {
-    /// Of a folder; what is loaded may lie outside it.
+    /// The files of a folder; loaded files may be outside it.
     pub fn new(folder: &Path) -> Files {
         Files {
             folder: folder.to_path_buf(),
@@ -63,17 +63,17 @@ impl Files {
         }
     }
 
-    /// A file that another names, relative to that one.
+    /// Loads a file that another file names, relative to that one.
     ///
     /// # Errors
-    /// The reason why it cannot be read.
+    /// Fails with the reason why it cannot be read.
     pub fn load(&self, asking: &str, written: &str) -> Result<Source, String> {
         let beside = Path::new(asking).parent().unwrap_or(Path::new(""));
         self.read(beside.join(written), written)
     }
 
-    /// What was read, in order.
-    pub fn finish(self) -> Vec<Read> {
+    /// The files that were read, in order.
+    pub fn finish(self) -> Vec<LoadedFile> {
         self.read.into_inner()
     }
 
@@ -83,7 +83,7 @@ impl Files {
             name: path.display().to_string(),
             text,
         };
-        self.read.borrow_mut().push(Read {
+        self.read.borrow_mut().push(LoadedFile {
             written: written.to_string(),
             source: source.clone(),
         });
@@ -91,10 +91,10 @@ impl Files {
     }
 }
 
-/// Bytes of the longest model file.
+/// Size of the longest model file, bytes.
 const MOST: u64 = 4 << 20;
 
-/// The text of a file, which is neither a pipe nor a device, since these might never end.
+/// The text of a regular file; pipes and devices are refused, since they might never end.
 fn text(path: &Path) -> Result<String, String> {
     let about = std::fs::metadata(path).map_err(|error| error.to_string())?;
     match (about.is_file(), about.len()) {

@@ -5,9 +5,9 @@
 
 // Curves through points.
 mod curve;
-// Leaves found, and replaced.
+// The leaves of expressions, and their replacement.
 mod rewrite;
-// Arithmetic as it is written on paper.
+// Operators on expressions.
 mod algebra;
 // Values and derivatives.
 mod calculus;
@@ -46,7 +46,7 @@ pub enum Symbol {
     Stretch(LinkId),
     /// The rate `v = ds/dt` of a link, inside its law.
     Rate(LinkId),
-    /// The resisting force of a link but for what its inerters add, N, positive in tension.
+    /// The resisting force of a link without that of its inerters, N, positive in tension.
     LinkForce(LinkId),
     /// An inner state of a link's law, by its place in the law.
     Inner(LinkId, u16),
@@ -76,7 +76,7 @@ impl Symbol {
 #[expect(missing_docs, reason = "each is the mathematical function of its name")]
 pub enum Function {
     Abs,
-    /// -1, 0 or 1: at rest there is no direction.
+    /// -1, 0 or 1; the sign of zero is 0.
     Sign,
     Sqrt,
     Exp,
@@ -115,9 +115,9 @@ pub enum Node {
     Max(Expr, Expr),
     /// `f(a)`
     Call(Function, Expr),
-    /// The second where the first is above zero, else the third.
+    /// The second if the first is above zero, else the third.
     Select(Expr, Expr, Expr),
-    /// The derivative of an order of a curve, at an abscissa.
+    /// A derivative of a curve at an abscissa; the order is from 0 (the value) to 3.
     Table(u8, Expr, CurveId),
 }
 
@@ -139,7 +139,7 @@ pub struct Graph {
 }
 
 impl Graph {
-    /// How many expressions there are: the work that it took to derive them.
+    /// Number of expressions, which measures the work of deriving them.
     pub fn size(&self) -> usize {
         self.nodes.len()
     }
@@ -335,7 +335,7 @@ impl Graph {
         &self.curves[id.0 as usize]
     }
 
-    /// The derivative of an order of a curve, at `x`: its value for order 0.
+    /// The derivative of a curve at `x`; order 0 is its value.
     pub fn table(&mut self, order: u8, x: Expr, curve: Curve<Expr>) -> Expr {
         if order > 3 || curve.entries().all(|&entry| self.is(entry, 0.0)) {
             return self.constant(0.0);
@@ -352,7 +352,7 @@ impl Graph {
         self.intern(Node::Table(order, x, id))
     }
 
-    /// `positive` where `test` is above zero, else `otherwise`.
+    /// `positive` if `test` is above zero, else `otherwise`.
     pub fn select(&mut self, test: Expr, positive: Expr, otherwise: Expr) -> Expr {
         match self.as_constant(test) {
             Some(x) if x > 0.0 => positive,

@@ -4,7 +4,7 @@
 //! stage have a short path beside the one through the stage.
 
 pub mod source;
-// Mistakes are a catalogue.
+// The catalogue of mistakes.
 pub mod diagnostic;
 // Units of every expression.
 pub mod units;
@@ -16,19 +16,19 @@ pub mod expr;
 pub mod model;
 // Text to graph.
 pub mod front;
-// The structure: what is held, what is solvable, what takes energy.
+// Rules of the structure: support, solvability, passivity.
 pub mod check;
-// Graph to equations, matrices and responses, and what can be seen.
+// Graph to equations, matrices and responses; identifiability of parameters.
 pub mod derive;
 // Expressions to straight-line programs, interpreted at run time.
 pub mod program;
-// Printed for other programs and for people.
+// Output for other programs and for people.
 pub mod back;
 // Models with effects added.
 pub mod patch;
 // The whole compiler in one function.
 pub mod compile;
-// Model files from disk, for the doors.
+// Model files from disk, for the command line, the macro and build scripts.
 pub mod disk;
 
 pub use back::{c, equations, javascript, matlab, modelica, notation, rust, show, straight};

@@ -1,4 +1,4 @@
-//! The model graph: an axle with its options taken, its names resolved and its units checked.
+//! The model graph: an axle with its options chosen, its names resolved and its units checked.
 //!
 //! It contains the content of the text and nothing derived from it: coordinates, links between them, inputs, outputs.
 //! Every expression is in [`Model::graph`]. `parse` and `resolve` build it; all later stages read it.
@@ -15,14 +15,14 @@ use crate::expr::{CoordinateId, Expr, Graph, LinkId, Symbol};
 use crate::source::Span;
 use crate::units::Unit;
 
-/// An axle with its options taken and its names resolved.
+/// An axle with its options chosen and its names resolved.
 #[derive(Clone, Debug)]
 pub struct Model {
     /// The name, a Rust identifier in snake case.
     pub name: String,
-    /// The sentence that describes it; may be empty.
+    /// The description; may be empty.
     pub doc: String,
-    /// The options taken, in the order of the family.
+    /// The chosen options with their values, in the order of the family.
     pub choices: Vec<(String, String)>,
     /// Graph of all expressions of the model.
     pub graph: Graph,
@@ -40,20 +40,20 @@ pub struct Model {
     pub gravities: Vec<Gravity>,
     /// In the order of the text.
     pub links: Vec<Link>,
-    /// Declared outputs, in the order of the text; where a model declares none, the acceleration of every
-    /// mass, and of every point that several coordinates move.
+    /// Declared outputs, in the order of the text. If a model declares none, they are the accelerations of every mass
+    /// and of every point that several coordinates move.
     pub outputs: Vec<Output>,
     /// In the order of the text.
     pub channels: Vec<Channel>,
 }
 
-/// Where something was declared: its span, and the declaration as one canonical line of model text.
+/// A declaration: its position, and its statement as one canonical line of model text.
 ///
-/// The line is printed from the syntax tree instead of cut from the file, so that all ways to compile generate the same
-/// bytes.
+/// The line is printed from the syntax tree, not copied from the file. Files and inline macros therefore generate the
+/// same code.
 #[derive(Clone, Debug)]
-pub struct Declared {
-    /// The name's place in its source.
+pub struct Declaration {
+    /// The position of the name in its source.
     pub span: Span,
     /// For example `link tire: wheel - pad { spring k_tire; damper c_tire; }`.
     pub line: String,
@@ -68,9 +68,9 @@ pub struct Parameter {
     pub unit: Unit,
     /// Unit as usually written.
     pub unit_name: String,
-    /// The sentence.
+    /// The description.
     pub doc: String,
-    /// In SI.
+    /// The default, in SI.
     pub default: Default,
     /// Bounds in SI, lower below upper.
     pub range: Option<(f64, f64)>,
@@ -78,8 +78,8 @@ pub struct Parameter {
     pub known: bool,
     /// Declared `clock`: the time since the start of a run, which varies within it.
     pub clock: bool,
-    /// Where.
-    pub declared: Declared,
+    /// The declaration.
+    pub declared: Declaration,
 }
 
 /// A derived quantity. Its expression may be shared with other names.
@@ -89,10 +89,10 @@ pub struct Definition {
     pub name: String,
     /// Its unit.
     pub unit: Unit,
-    /// In parameters and earlier definitions.
+    /// An expression in parameters and earlier definitions.
     pub value: Expr,
-    /// Where.
-    pub declared: Declared,
+    /// The declaration.
+    pub declared: Declaration,
 }
 
 /// A direction of motion. Names of coordinates and links are unique within a direction.
@@ -104,18 +104,18 @@ pub struct Direction(pub String);
 pub struct Coordinate {
     /// The name, unique in its direction.
     pub name: String,
-    /// Its other names there: points.
+    /// The names of points that move with it in the same direction.
     pub also: Vec<String>,
-    /// z, x, ...
+    /// For example z or x.
     pub direction: Direction,
     /// What moves it.
     pub kind: CoordinateKind,
     /// True for an angle (rad, inertia in kg m²), false for a position (m, mass in kg).
     pub angle: bool,
-    /// The sentence; may be empty.
+    /// The description; may be empty.
     pub doc: String,
-    /// Where.
-    pub declared: Declared,
+    /// The declaration.
+    pub declared: Declaration,
 }
 
 /// A point that coordinates move together, such as the nose of a body that pitches.
@@ -123,14 +123,14 @@ pub struct Coordinate {
 pub struct Point {
     /// The name, unique in its direction.
     pub name: String,
-    /// z, x, ...
+    /// For example z or x.
     pub direction: Direction,
     /// Coordinates with their coefficients (functions of parameters only), each coordinate once.
     pub combination: Vec<(CoordinateId, Expr)>,
     /// True for an angle, false for a position.
     pub angle: bool,
-    /// Where.
-    pub declared: Declared,
+    /// The declaration.
+    pub declared: Declaration,
 }
 
 /// What moves a coordinate.
@@ -159,19 +159,19 @@ pub struct ForceInput {
     pub on: Vec<(CoordinateId, Expr)>,
     /// N, or N m for a moment.
     pub unit: Unit,
-    /// Where.
-    pub declared: Declared,
+    /// The declaration.
+    pub declared: Declaration,
 }
 
-/// A uniform acceleration `-g` of every mass (not angle) of a direction.
+/// A uniform acceleration `-g` of every mass of a direction; inertias of angles are not affected.
 #[derive(Clone, Debug)]
 pub struct Gravity {
     /// The name, for example `g`.
     pub name: String,
-    /// The direction that it pulls along, towards the negative side.
+    /// The direction along which it acts, towards negative positions.
     pub direction: Direction,
-    /// Where.
-    pub declared: Declared,
+    /// The declaration.
+    pub declared: Declaration,
 }
 
 /// A massless connection of coordinates.
@@ -187,13 +187,13 @@ pub struct Link {
     pub unit: Unit,
     /// The force.
     pub law: Law,
-    /// The terms that replace those of `law` while a tyre rolls over a profile, where the text gives them; a road
-    /// must be in the stretch. The inner states are the same.
+    /// The terms that replace those of `law` while a tyre rolls over a profile; `None` if the text has no `rolling`
+    /// block. The stretch then contains a road. The inner states are the same.
     pub rolling: Option<Vec<Term>>,
-    /// The sentence; may be empty.
+    /// The description; may be empty.
     pub doc: String,
-    /// Where.
-    pub declared: Declared,
+    /// The declaration.
+    pub declared: Declaration,
 }
 
 /// The constitutive law of a link: the sum of its terms.
@@ -283,8 +283,8 @@ pub struct Output {
     pub signal: Signal,
     /// Its unit.
     pub unit: Unit,
-    /// Where.
-    pub declared: Declared,
+    /// The declaration.
+    pub declared: Declaration,
 }
 
 /// A ratio of a signal to another or to a force input, such as `pad_to_body`.
@@ -296,8 +296,8 @@ pub struct Channel {
     pub numerator: Signal,
     /// Denominator.
     pub denominator: Reference,
-    /// Where.
-    pub declared: Declared,
+    /// The declaration.
+    pub declared: Declaration,
 }
 
 /// Denominator of a channel.

@@ -39,14 +39,14 @@ impl Span {
 /// A text with a name, usually a path as the user wrote it.
 #[derive(Clone, Debug)]
 pub struct Source {
-    /// For messages.
+    /// The name in messages.
     pub name: String,
     /// Empty for the tokens of an inline macro.
     pub text: String,
 }
 
 impl Source {
-    /// The same without a byte order mark.
+    /// The same source without a byte order mark.
     pub fn without_mark(mut self) -> Source {
         if let Some(text) = self.text.strip_prefix('\u{feff}') {
             self.text = text.to_string();

@@ -47,7 +47,7 @@ impl Unit {
         }
     }
 
-    /// The unit of `a^exponent`, or `None` where the exponents would not be sixths, or beyond reason.
+    /// The unit of `a^exponent`; `None` if an exponent of the result is no multiple of 1/6, or larger than 100.
     pub fn power(self, exponent: f64) -> Option<Unit> {
         let mut sixths = [0; 3];
         for (result, own) in sixths.iter_mut().zip(self.sixths) {
@@ -61,7 +61,7 @@ impl Unit {
     }
 }
 
-/// A symbol: its size in SI is `multiply / divide`, which keeps decimal sizes exact, and its unit.
+/// A symbol with its unit and its size in SI, `multiply / divide`. Two numbers keep decimal sizes exact.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Symbol {
     /// 1000 for kN.
@@ -104,7 +104,7 @@ const SYMBOLS: &[(&str, f64, f64, Unit)] = &[
 ];
 
 impl fmt::Display for Unit {
-    /// As an engineer writes it: with N where there is a force in it, numerators before denominators.
+    /// As an engineer writes it: with N if it contains a force, and numerators before denominators.
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let [kilogram, meter, second] = self.sixths;
         let factors = if kilogram != 0 && second != 0 {

@@ -1,12 +1,12 @@
 //! Entry to machine code and its calls: all unsafe code.
 #![allow(
     unsafe_code,
-    reason = "a processor runs what was written into memory, and Rust cannot know what that does"
+    reason = "the processor runs code that was written into memory, which Rust cannot check"
 )]
 
 use memmap2::{Mmap, MmapMut};
 use qcar_dsl::derive::vectors::Vectors;
-use qcar_dsl::evaluate::given::{Given, Part};
+use qcar_dsl::evaluate::arguments::{Arguments, Part};
 use qcar_dsl::program::Program;
 use qcar_model::{LANES, Lanes};
 
@@ -68,7 +68,7 @@ impl Code {
     ///
     /// # Panics
     /// If an argument has fewer entries than the program reads, or the results do not fit.
-    pub fn run(&self, given: &Given, into: &mut [f64]) {
+    pub fn run(&self, given: &Arguments, into: &mut [f64]) {
         let mut parts = [std::ptr::null(); 4];
         for (pointer, &(part, least)) in parts.iter_mut().zip(&self.reads.parts) {
             *pointer = at_least(given.part(part), least).as_ptr();
@@ -110,7 +110,7 @@ impl Code {
     ///
     /// # Panics
     /// As [`Code::run`].
-    pub fn sweep(&self, given: &Given, points: usize, into: &mut [&mut [f64]]) -> bool {
+    pub fn sweep(&self, given: &Arguments, points: usize, into: &mut [&mut [f64]]) -> bool {
         if points < self.width {
             return false;
         }
@@ -162,7 +162,7 @@ fn at_least<T>(entries: &[T], least: usize) -> &[T] {
 /// # Safety
 /// There are as many rows as the call has arguments.
 unsafe extern "sysv64" fn compute<const N: usize>(call: &Call, rows: *const Wide, result: &mut Wide) {
-    // SAFETY: the caller, which is the code of a program with this call, says so.
+    // SAFETY: the caller, the code of a program with this call, has stored this many rows.
     let rows = unsafe { std::slice::from_raw_parts(rows, call.arguments()) };
     for (point, result) in result.0.iter_mut().enumerate().take(N) {
         *result = call.value(|argument| rows[argument].0[point]);
@@ -202,13 +202,13 @@ mod tests {
         let [once, sets, points] = shapes.map(|shape| code(shape).expect("the program has a translation"));
         let constants = [7.0, 0.25, 0.5, 0.75, 1.0, 1.25];
         let mut at = [0.0; 2];
-        once.run(&Given::default().with(Part::Constants, &constants), &mut at);
+        once.run(&Arguments::default().with(Part::Constants, &constants), &mut at);
         assert_eq!(at, [0.5, 0.5f64.sin()]);
         let mut rows = [[0.0; LANES]; 2];
         sets.sets(&[(Part::Constants, &[[7.0; LANES], [0.25; LANES]])], &mut rows);
         assert_eq!(rows, [[0.5; LANES], [0.5f64.sin(); LANES]]);
         let columns = [[0.0; 9], std::array::from_fn(|point| 0.25 * (point + 1) as f64)];
-        let given = Given::default().with(Part::Constants, columns.as_flattened());
+        let given = Arguments::default().with(Part::Constants, columns.as_flattened());
         let (mut twice, mut sine) = ([0.0; 9], [0.0; 9]);
         assert!(points.sweep(&given, 9, &mut [&mut twice, &mut sine]));
         assert_eq!(

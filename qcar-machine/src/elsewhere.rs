@@ -1,7 +1,7 @@
 //! Replacement for machine code on other processors: there is none.
 
 use qcar_dsl::derive::vectors::Vectors;
-use qcar_dsl::evaluate::given::{Given, Part};
+use qcar_dsl::evaluate::arguments::{Arguments, Part};
 use qcar_dsl::program::Program;
 use qcar_model::Lanes;
 
@@ -12,13 +12,13 @@ use crate::shape::{Breadth, Shape};
 pub enum Code {}
 
 impl Code {
-    /// Nothing.
+    /// No machine code: always `None`.
     pub fn new(_vectors: &Vectors, _program: &Program, _shape: Shape, _breadth: Breadth) -> Option<Code> {
         None
     }
 
     /// Of no code.
-    pub fn run(&self, _given: &Given, _into: &mut [f64]) {
+    pub fn run(&self, _given: &Arguments, _into: &mut [f64]) {
         match *self {}
     }
 
@@ -28,7 +28,7 @@ impl Code {
     }
 
     /// Of no code.
-    pub fn sweep(&self, _given: &Given, _points: usize, _into: &mut [&mut [f64]]) -> bool {
+    pub fn sweep(&self, _given: &Arguments, _points: usize, _into: &mut [&mut [f64]]) -> bool {
         match *self {}
     }
 }

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use qcar_dsl::derive::vectors::Vectors;
 use qcar_dsl::evaluate::Evaluator;
-use qcar_dsl::evaluate::given::{Given, Part, contact_entries, prepared, unprepared};
+use qcar_dsl::evaluate::arguments::{Arguments, Part, contact_entries, prepared, unprepared};
 use qcar_dsl::program::{Program, Programs};
 use qcar_dsl::schedule::Compiled;
 use qcar_model::{About, Contact, Contacts, LANES, Lanes, Model, Points, ResponseMut};
@@ -119,7 +119,7 @@ impl Machine {
     }
 
     /// Computes several points; false if that is left to the interpreter.
-    fn sweep(&self, routine: &Routine, program: &Program, given: &Given, points: usize, into: &mut [f64]) -> bool {
+    fn sweep(&self, routine: &Routine, program: &Program, given: &Arguments, points: usize, into: &mut [f64]) -> bool {
         let code = self.points(routine, program, MOVING, points);
         code.is_some_and(|code| code.sweep(given, points, &mut [into]))
     }
@@ -132,7 +132,7 @@ impl Model for Machine {
 
     fn prepare(&self, p: &[f64], constants: &mut [f64]) {
         match self.once(&self.prepare, &self.programs.prepare) {
-            Some(code) => code.run(&Given::default().with(Part::Parameters, p), constants),
+            Some(code) => code.run(&Arguments::default().with(Part::Parameters, p), constants),
             None => self.interpreter.prepare(p, constants),
         }
     }
@@ -236,7 +236,7 @@ impl Model for Machine {
     }
 
     fn response(&self, excitation: usize, constants: &[f64], omega: &[f64], mut into: ResponseMut<'_>) {
-        let given = Given::default()
+        let given = Arguments::default()
             .with(Part::Constants, constants)
             .with(Part::Frequency, omega);
         let lines = omega.len();
@@ -355,8 +355,8 @@ impl Model for Machine {
     }
 }
 
-type GivenSets<'a> = [(Part, &'a [Lanes]); 3];
+type ArgumentSets<'a> = [(Part, &'a [Lanes]); 3];
 
-fn moving_sets<'a>(of_set: (Part, &'a [Lanes]), x: &'a [Lanes], u: &'a [Lanes]) -> GivenSets<'a> {
+fn moving_sets<'a>(of_set: (Part, &'a [Lanes]), x: &'a [Lanes], u: &'a [Lanes]) -> ArgumentSets<'a> {
     [of_set, (Part::States, x), (Part::Inputs, u)]
 }

@@ -1,6 +1,6 @@
 //! Positions of the leaves of a program in the arguments of its code.
 
-use qcar_dsl::evaluate::given::{Part, place};
+use qcar_dsl::evaluate::arguments::{Part, place};
 use qcar_dsl::program::{Program, Value};
 
 use crate::shape::Shape;

@@ -1,6 +1,6 @@
 //! Shapes of the code of a program, and widths of its vectors.
 
-use qcar_dsl::evaluate::given::Part;
+use qcar_dsl::evaluate::arguments::Part;
 
 /// Number of evaluations of a program in a call.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

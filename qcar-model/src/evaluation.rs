@@ -1,6 +1,6 @@
 //! Arguments and results of an evaluation.
 
-/// What a tyre that rolls over a profile gives to its model.
+/// The contact of a tyre that rolls over a profile, as an input of its model.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Contact {
     /// Equivalent stretch, m: minus the deflection on a flat road that would have the same contact.
@@ -11,13 +11,13 @@ pub struct Contact {
     pub force: [f64; 2],
 }
 
-/// How many parameter sets, or lines of a frequency response, are computed together.
+/// Number of parameter sets, or of lines of a frequency response, that are computed together.
 pub const LANES: usize = 8;
 
-/// One value of each of several parameter sets.
+/// One value for each of several parameter sets.
 pub type Lanes = [f64; LANES];
 
-/// What tyres that roll give to several parameter sets: as [`Contact`], row by row.
+/// The contacts of several parameter sets: as [`Contact`], row by row.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Contacts {
     /// Equivalent stretches, m.
@@ -29,7 +29,7 @@ pub struct Contacts {
 }
 
 impl Contacts {
-    /// That of a set.
+    /// The contact of a set.
     #[inline]
     pub fn get(&self, set: usize) -> Contact {
         Contact {
@@ -39,7 +39,7 @@ impl Contacts {
         }
     }
 
-    /// Changes that of a set.
+    /// Sets the contact of a set.
     #[inline]
     pub fn set(&mut self, set: usize, contact: &Contact) {
         (self.s[set], self.v[set]) = (contact.s, contact.v);
@@ -47,7 +47,7 @@ impl Contacts {
     }
 }
 
-/// Lets `work` find from the values of each set what stands there in the rows `into`.
+/// Calls `work` for each set with its values, and stores the results in the rows `into`.
 pub(crate) fn one_by_one(
     from: [&[Lanes]; 3],
     into: &mut [Lanes],
@@ -65,10 +65,10 @@ pub(crate) fn one_by_one(
     }
 }
 
-/// States and inputs at several points: structure of arrays, so that a model may work on many points at once.
+/// States and inputs at several points as a structure of arrays, so that a model can compute many points at once.
 #[derive(Clone, Copy, Debug)]
 pub struct Points<'a> {
-    /// How many.
+    /// Number of points.
     pub count: usize,
     /// A row of `count` points for each state.
     pub x: &'a [f64],
@@ -77,7 +77,7 @@ pub struct Points<'a> {
 }
 
 impl Points<'_> {
-    /// Lets `work` find from the states and inputs of each point what stands there in the rows `into`.
+    /// Calls `work` for each point with its states and inputs, and stores the results in the rows `into`.
     pub(crate) fn one_by_one(&self, into: &mut [f64], mut work: impl FnMut(&[f64], &[f64], &mut [f64])) {
         let room = |rows: &[f64]| vec![0.0; rows.len() / self.count.max(1)];
         let (mut x, mut u, mut found) = (room(self.x), room(self.u), room(into));
@@ -96,12 +96,13 @@ impl Points<'_> {
     }
 }
 
-/// Where a frequency response is written: structure of arrays, a row of `omega.len()` lines for each entry.
+/// Destination of a frequency response: a structure of arrays, with a row of `omega.len()` lines for each entry.
 pub struct ResponseMut<'a> {
     /// Real parts, row after row, in the order of [`crate::ResponseLayout::outputs`].
     pub re: &'a mut [f64],
     /// Imaginary parts.
     pub im: &'a mut [f64],
-    /// Real and imaginary parts of the parameter Jacobian, in the order of [`crate::ResponseLayout::jacobian`], where wanted.
+    /// Real and imaginary parts of the parameter Jacobian, in the order of [`crate::ResponseLayout::jacobian`]; `None`
+    /// if it is not wanted.
     pub jacobian: Option<(&'a mut [f64], &'a mut [f64])>,
 }

@@ -102,7 +102,7 @@ pub trait Model: Send + Sync {
 
     /// The frequency response of a linear model to one excitation, and its parameter Jacobian if wanted.
     ///
-    /// See [`ResponseLayout`] for what is written where. A nonlinear model has no excitation to ask for.
+    /// [`ResponseLayout`] describes the rows. A nonlinear model has no response.
     fn response(&self, excitation: usize, _constants: &[f64], _omega: &[f64], _into: ResponseMut<'_>) {
         panic!(
             "excitation {excitation} of {}, which has no frequency response",
@@ -110,12 +110,13 @@ pub trait Model: Send + Sync {
         );
     }
 
-    /// [`Model::response`] of several prepared parameter sets. Of each line there are, one after the other, a row for each output with its
-    /// real parts, one for each with its imaginary parts, and `with_jacobian` the same of the parameter Jacobian. The bits are the same.
+    /// [`Model::response`] for several prepared parameter sets. For each line there is a row with the real part of each
+    /// output, a row with the imaginary part of each, and, `with_jacobian`, the same for the parameter Jacobian. The
+    /// bits are the same.
     ///
-    /// The rows of all lines of eight sets seldom fit into a cache: it pays to ask for some lines at a time, and to use them at once. A
-    /// model without such code of its own computes one set after the other, and a call of [`Model::response`] for each set with all its
-    /// lines is faster.
+    /// The rows of all lines of eight sets seldom fit into a cache, so it is faster to compute and use a few lines at a
+    /// time. A model without its own code for sets computes one set after another; then a call of [`Model::response`]
+    /// for each set with all lines is faster.
     fn response_sets(
         &self,
         excitation: usize,
@@ -158,7 +159,7 @@ pub trait Model: Send + Sync {
         self.outputs(constants, x, u, y);
     }
 
-    /// [`Model::contact_force`] of several prepared parameter sets, each in a state of its own. The bits are the same.
+    /// [`Model::contact_force`] for several prepared parameter sets, each in its own state. The bits are the same.
     fn contact_force_sets(&self, constants: &[Lanes], x: &[Lanes], s: &Lanes, v: &Lanes) -> Lanes {
         let mut force = [[0.0; LANES]];
         one_by_one([constants, x, &[*s, *v]], &mut force, |constants, x, contact, force| {
@@ -167,7 +168,7 @@ pub trait Model: Send + Sync {
         force[0]
     }
 
-    /// [`Model::rolling_derivative`] of several prepared parameter sets, each in a state and under a contact of its own. The bits
+    /// [`Model::rolling_derivative`] for several prepared parameter sets, each with its own state and contact. The bits
     /// are the same.
     fn rolling_derivative_sets(
         &self,
@@ -190,8 +191,9 @@ pub trait Model: Send + Sync {
         });
     }
 
-    /// A link (its place in [`About::links`]) on a dynamometer: a model with the same parameters, whose one motion is the link's stretch
-    /// and whose one output is its force. `None` of all but those that a model was compiled with so.
+    /// A link, given by its position in [`About::links`], on a dynamometer: a model with the same parameters, whose
+    /// only motion is the link's stretch and whose only output is its force. `None` for a link that was not compiled in
+    /// this way.
     fn alone(&self, _link: usize) -> Option<&dyn Model> {
         None
     }

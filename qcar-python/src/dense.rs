@@ -12,7 +12,7 @@ pub const ALL: [Matrix; 4] = [Matrix::A, Matrix::B, Matrix::C, Matrix::D];
 /// Below this number of sets, neither threads nor checks for signals are worthwhile.
 pub const FEW: usize = 64;
 
-/// Where matrices are taken: a row of parameters, states and inputs for each set.
+/// Points at which matrices are evaluated: a row of parameters, states and inputs for each set.
 pub struct At<'a> {
     /// Parameters.
     pub p: ArrayView2<'a, f64>,
@@ -99,8 +99,8 @@ pub fn matrices(model: &dyn Model, at: &At<'_>) -> [Array3<f64>; 4] {
     })
 }
 
-/// Their derivatives by every parameter, each (sets, parameters, rows, columns). What a parameter moves through those that take
-/// their value from it counts as its own.
+/// Their derivatives by every parameter, each (sets, parameters, rows, columns). The derivative by a parameter includes
+/// those by the parameters that are tied to it.
 pub fn jacobians(model: &dyn Model, at: &At<'_>, leader: &[usize]) -> [Array4<f64>; 4] {
     let about = model.about();
     let width = about.sensitivities.len();

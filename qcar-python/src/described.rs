@@ -1,4 +1,4 @@
-//! What a model has, as the JSON from which the Python side makes its named tuples.
+//! The description of a model as JSON, from which the Python side makes its named tuples.
 
 use qcar::state_space::{InputName, OutputName, StateName, input_name, output_name, state_name};
 use qcar_runtime::model::{About, Default, Parameter};
@@ -36,7 +36,7 @@ struct Drives<'a> {
     unit: &'static str,
 }
 
-/// All that there is to know of a model without evaluating it.
+/// The description of a model.
 pub fn described(about: &About) -> String {
     let drives = about.excitations.iter().map(|own| Drives {
         name: &own.name,

@@ -1,4 +1,4 @@
-//! What Python raises, and which failure of qcar becomes which of it.
+//! The exceptions of the Python package, and their mapping from failures of qcar.
 
 use pyo3::PyErr;
 use pyo3::create_exception;
@@ -8,13 +8,13 @@ create_exception!(
     qcar,
     Error,
     PyValueError,
-    "What was given to qcar cannot be used. The message says where and why, and what to do about it."
+    "Input that qcar cannot use. The message states the place, the reason and the remedy."
 );
 create_exception!(
     qcar,
     ModelError,
     Error,
-    "A model that the compiler refuses, or a name or path that is no model."
+    "A model that the compiler refuses, or a name or path that is not a model."
 );
 create_exception!(
     qcar,
@@ -26,36 +26,36 @@ create_exception!(
     qcar,
     CampaignError,
     Error,
-    "A campaign that cannot be read, or that says nothing of its model."
+    "A campaign that cannot be read, or that has no data for its model."
 );
 create_exception!(qcar, SimulationError, Error, "A ride that cannot be simulated.");
 
-/// A failure in its own words, less the line break that ends them on a terminal.
+/// The message of a failure without its final line break.
 fn words(of: impl ToString) -> String {
     of.to_string().trim_end().to_string()
 }
 
-/// Of a model.
+/// The exception for a failure of a model.
 pub fn of_model(failure: impl ToString) -> PyErr {
     ModelError::new_err(words(failure))
 }
 
-/// Of its parameters.
+/// The exception for a failure of parameters.
 pub fn of_parameters(failure: impl ToString) -> PyErr {
     ParameterError::new_err(words(failure))
 }
 
-/// Of a campaign.
+/// The exception for a failure of a campaign.
 pub fn of_campaign(failure: impl ToString) -> PyErr {
     CampaignError::new_err(words(failure))
 }
 
-/// Of a ride.
+/// The exception for a failure of a ride.
 pub fn of_ride(failure: impl ToString) -> PyErr {
     SimulationError::new_err(words(failure))
 }
 
-/// Which of several an error is about, to stand before its sentence; nothing where there is one.
+/// The number of the set or ride that fails, as a prefix of the message; empty if there is only one.
 pub fn which(what: &str, nth: usize, of: usize) -> String {
     match of {
         1 => String::new(),

@@ -1,30 +1,30 @@
 //! The extension module of the Python package `qcar`: arrays in, arrays out. Names, docstrings and shapes that a user sees are in
 //! `python/qcar`.
 
-// What Python raises.
+// Exceptions.
 mod errors;
-// What a model has.
+// The description of a model.
 mod described;
 // Parameter sets by name.
 mod sets;
-// Matrices and their derivatives,
+// Matrices and their derivatives.
 mod dense;
-// responses,
+// Frequency responses.
 mod responses;
-// and ratios of them.
+// Ratios of responses.
 mod ratios;
-// Work that a signal stops:
+// Long work, which a signal stops.
 mod long;
-// rides,
+// Rides.
 mod rides;
-// and what is done with campaigns.
+// Verbs on campaigns.
 mod verbs;
-// A model with all that is its own.
+// The model class.
 mod model;
 
 use pyo3::prelude::*;
 
-/// What `qcar` is made of; not for users.
+/// The extension module behind `qcar`, not for direct use.
 #[pymodule]
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let py = module.py();

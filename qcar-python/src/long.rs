@@ -1,4 +1,4 @@
-//! Work that takes long: without the lock of the interpreter, and given up when the user presses Ctrl-C.
+//! Long work, which runs without the lock of the interpreter and is cancelled if the user presses Ctrl-C.
 
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
@@ -8,16 +8,16 @@ use std::time::Duration;
 use pyo3::prelude::*;
 use qcar::stopping::{self, Stop};
 
-/// How often Python is asked for signals.
+/// Interval between checks for signals.
 const BETWEEN: Duration = Duration::from_millis(50);
 
-/// As much as a main thread has: the compiler goes as deep as a model's expressions.
+/// Stack size, the same as that of a main thread: the compiler recurses over the expressions of a model.
 const STACK: usize = 8 << 20;
 
-/// Does `work` on a thread of its own, while this one listens for signals.
+/// Runs `work` on a separate thread while this one checks for signals.
 ///
 /// # Errors
-/// What a signal raises, such as `KeyboardInterrupt`: the work has ended by then.
+/// Fails with the exception of a signal, such as `KeyboardInterrupt`, after the work has ended.
 pub fn long<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
     let (finished, heard) = channel::<()>();
     let (done, signal) = py.detach(move || {
@@ -39,7 +39,7 @@ pub fn long<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResul
     }
 }
 
-/// Waits until the work is finished; the first signal that raises something stops it.
+/// Waits until the work is finished; the first signal that raises an exception cancels it.
 fn listen(finished: &Receiver<()>, stop: &Stop) -> Option<PyErr> {
     let mut raised = None;
     while let Err(RecvTimeoutError::Timeout) = finished.recv_timeout(BETWEEN) {

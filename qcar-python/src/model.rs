@@ -23,7 +23,7 @@ use crate::rides::{self, Common, Each};
 use crate::verbs::variant_named;
 use crate::{errors, ratios, responses, sets};
 
-/// A model that can run: shipped, or read.
+/// A runnable model.
 #[pyclass(frozen, module = "qcar._native")]
 pub struct Model {
     pub(crate) loaded: Arc<Loaded>,
@@ -72,7 +72,8 @@ impl Model {
         described(self.loaded.about())
     }
 
-    /// From the columns `given` (sets, names) of some parameters: all parameters (sets, parameters), and whom each follows.
+    /// All parameters (sets, parameters) from the columns `given` (sets, names) of some, and for each parameter the one
+    /// to which it is tied.
     fn resolve<'py>(
         &self,
         py: Python<'py>,
@@ -104,14 +105,14 @@ impl Model {
         Ok(all.map(|matrix| matrix.into_pyarray(py)))
     }
 
-    /// Their derivatives, each (sets, parameters, rows, columns).
+    /// The derivatives of A, B, C and D, each (sets, parameters, rows, columns).
     fn jacobians<'py>(&self, py: Python<'py>, points: Points<'py>, leader: Vec<usize>) -> PyResult<Jacobians<'py>> {
         let at = points.at();
         let all: [Array4<f64>; 4] = batch(py, at.p.nrows(), || dense::jacobians(&**self.loaded, &at, &leader))?;
         Ok(all.map(|matrix| matrix.into_pyarray(py)))
     }
 
-    /// Responses of outputs to excitations (sets, lines, outputs, excitations), and their derivatives where wanted.
+    /// Responses of outputs to excitations (sets, lines, outputs, excitations), and their derivatives if wanted.
     fn responses<'py>(
         &self,
         py: Python<'py>,
@@ -127,7 +128,7 @@ impl Model {
         Ok((found.value.into_pyarray(py), slopes))
     }
 
-    /// Ratios of the channels (sets, lines, channels), and their derivatives where wanted.
+    /// Ratios of the channels (sets, lines, channels), and their derivatives if wanted.
     fn ratios<'py>(
         &self,
         py: Python<'py>,
@@ -143,7 +144,7 @@ impl Model {
         Ok((found.value.into_pyarray(py), slopes))
     }
 
-    /// Frequencies (Hz), damping ratios and, for each mode, the amplitudes of what moves by location and axis.
+    /// Frequencies (Hz), damping ratios and, for each mode, the amplitudes of moving parts by location and axis.
     fn modes(&self, p: PyReadonlyArray1<'_, f64>) -> PyResult<Vec<Mode>> {
         let about = self.loaded.about();
         let names = about.parameters.iter().map(|own| own.name.to_string());
@@ -203,7 +204,7 @@ impl Points<'_> {
     }
 }
 
-/// What of a model is shown.
+/// Stages of a model.
 fn stage_named(name: &str) -> PyResult<Stage> {
     match name {
         "model" => Ok(Stage::Model),
@@ -219,7 +220,7 @@ fn stage_named(name: &str) -> PyResult<Stage> {
     }
 }
 
-/// Work on so many parameter sets without the lock of the interpreter; a signal stops it where it may take long.
+/// Runs work on `count` parameter sets without the lock of the interpreter; for many sets, a signal cancels it.
 fn batch<T: Send>(py: Python<'_>, sets: usize, work: impl FnOnce() -> T + Send) -> PyResult<T> {
     match sets {
         0..FEW => Ok(py.detach(work)),
@@ -239,7 +240,7 @@ type Rides<'py> = (
     Vec<Vec<f64>>,
 );
 
-/// What all rides have in common, as Python gives it.
+/// The common settings of all rides, as Python gives them.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 struct Setup {

@@ -13,18 +13,18 @@ use qcar_runtime::response::parameters::Values;
 use qcar_runtime::response::ratio::{Ratio, between};
 use rayon::prelude::*;
 
-/// The ratios (sets, lines, channels) and, where asked for, their derivatives (sets, parameters, lines, channels).
+/// The ratios (sets, lines, channels) and, if wanted, their derivatives (sets, parameters, lines, channels).
 pub struct Ratios {
-    /// In the unit of the numerator per that of the denominator.
+    /// Ratios, in the unit of the numerator over that of the denominator.
     pub value: Array3<Complex<f64>>,
-    /// The same per unit of the parameter.
+    /// Derivatives, per unit of the parameter.
     pub jacobian: Option<Array4<Complex<f64>>>,
 }
 
 /// Every channel of a model at `frequency` (Hz, above zero).
 ///
 /// # Errors
-/// A channel that nothing drives, or whose signals the model cannot give.
+/// Fails if a channel has no excitation, or if the model cannot give its signals.
 pub fn ratios(
     model: &Loaded,
     sets: ArrayView2<'_, f64>,
@@ -83,7 +83,7 @@ fn one(model: &Loaded, values: &Values, frequency: &[f64], jacobian: bool) -> Re
     about.channels.iter().map(channel).collect()
 }
 
-/// A set with its ties: what follows another parameter is not given.
+/// A parameter set with its ties; tied parameters are not given.
 fn values(about: &About, p: &[f64], leader: &[usize]) -> Values {
     let own = (0..p.len()).filter(|&k| leader[k] == k);
     let given = own.map(|k| (about.parameters[k].name.to_string(), p[k])).collect();

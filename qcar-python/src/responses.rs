@@ -7,12 +7,12 @@ use qcar_runtime::model::Model;
 use qcar_runtime::response::Response;
 use rayon::prelude::*;
 
-/// The response (sets, lines, outputs, excitations) and, where asked for, its derivatives (sets, parameters, lines, outputs,
+/// The response (sets, lines, outputs, excitations) and, if wanted, its derivatives (sets, parameters, lines, outputs,
 /// excitations).
 pub struct Responses {
-    /// Per m of a motion, per N of a force.
+    /// Response per m of a motion or N of a force.
     pub value: Array4<Complex<f64>>,
-    /// The same per unit of the parameter.
+    /// Derivatives, per unit of the parameter.
     pub jacobian: Option<Array5<Complex<f64>>>,
 }
 

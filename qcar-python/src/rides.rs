@@ -14,39 +14,39 @@ use qcar_runtime::tyre::Tyre;
 
 use crate::errors;
 
-/// What all rides have in common.
+/// Common settings of all rides.
 pub struct Common {
     /// The tyre.
     pub tyre: Tyre,
     /// Static load on it, N.
     pub load: f64,
-    /// What of the model is simulated.
+    /// Variant of the model.
     pub variant: Variant,
-    /// A road for all of them, else a cleat of each ride's height.
+    /// A road for all rides; without one, a cleat of each ride's height.
     pub road: Option<Road>,
     /// Straight part of the cleat's descent, its return to the flat, and the flat road before it, m.
     pub cleat: [f64; 3],
-    /// Hz.
+    /// Sample rate, Hz.
     pub sample_rate: f64,
-    /// Of each ride.
+    /// Number of samples of each ride.
     pub samples: usize,
-    /// Relative.
+    /// Relative tolerance.
     pub tolerance: f64,
 }
 
-/// What differs from ride to ride.
+/// Settings of each ride.
 pub struct Each<'a> {
-    /// (rides, parameters)
+    /// Parameters, SI: (rides, parameters).
     pub p: ArrayView2<'a, f64>,
-    /// m.
+    /// Heights of the cleats, m.
     pub height: ArrayView1<'a, f64>,
-    /// m/s.
+    /// Speeds, m/s.
     pub speed: ArrayView1<'a, f64>,
 }
 
-/// What rides record.
+/// Recorded signals and values of rides.
 pub struct Recorded {
-    /// (rides, outputs, samples)
+    /// Outputs: (rides, outputs, samples).
     pub outputs: Array3<f64>,
     /// Force of the tyre along z and x and area of its contact: (rides, 3, samples).
     pub tyre: Array3<f64>,
@@ -56,14 +56,14 @@ pub struct Recorded {
     pub after_shake: Array2<f64>,
     /// Deflection of the tyre before the obstacle, m: (rides,).
     pub static_deflection: Array1<f64>,
-    /// When the tyre lost the ground, s, ride by ride.
+    /// Times at which the tyre lost contact, s, ride by ride.
     pub lift_offs: Vec<Vec<f64>>,
 }
 
 /// Simulates all rides in parallel; each is the same as it is alone.
 ///
 /// # Errors
-/// The sentence of the first ride that cannot be simulated.
+/// Fails with the message of the first ride that cannot be simulated.
 pub fn rides(model: &Loaded, common: &Common, each: &Each<'_>) -> Result<Recorded, String> {
     let count = each.p.nrows();
     let (outputs, samples) = (model.about().outputs.len(), common.samples);
@@ -141,7 +141,7 @@ impl Recorded {
     }
 }
 
-/// The acceleration that feels the obstacle first: by it impact and after-shake are found.
+/// The acceleration that responds to the obstacle first, which determines impact and after-shake.
 fn wheel(about: &About) -> Option<usize> {
     let roles = Roles::of(about, &RoleNames::default()).ok()?;
     let of = |mass: &str| {

@@ -1,4 +1,4 @@
-//! Parameter sets: what Python gives by name, made rows with a value for every parameter of the model.
+//! Parameter sets: converts values by name from Python to rows with a value for every parameter of the model.
 
 use std::collections::BTreeMap;
 
@@ -10,19 +10,20 @@ use qcar_runtime::response::parameters::Values;
 
 use crate::errors;
 
-/// Rows of values for all parameters of a model, and for each parameter the one that it takes its value from.
+/// Rows of values for all parameters of a model, and for each parameter the one to which it is tied.
 pub struct Sets {
     /// A row for each set.
     pub p: Array2<f64>,
-    /// Itself, for a parameter that is not tied.
+    /// The leader of each parameter; the parameter itself if it is not tied.
     pub leader: Vec<usize>,
 }
 
-/// Gives every parameter its value in every set: the columns of `given` are those of `names`, the others have their defaults.
+/// Determines the value of every parameter in every set: the columns of `given` are those of `names`, all others have
+/// their defaults.
 ///
 /// # Errors
-/// A name that the model does not have, a parameter without any value, a value that is not finite, and masses that are not above
-/// zero.
+/// Fails for a name that is no parameter of the model, a parameter without a value, a value that is not finite, or a
+/// mass that is not positive.
 pub fn resolve(model: &Loaded, names: &[String], given: ArrayView2<'_, f64>) -> PyResult<Sets> {
     let about = model.about();
     let refused = |set: usize, why: String| {
@@ -41,7 +42,7 @@ pub fn resolve(model: &Loaded, names: &[String], given: ArrayView2<'_, f64>) -> 
         if own.iter().any(|value| !value.is_finite()) {
             resolved(set)?;
         }
-        // What follows a parameter moves with it, as it did when the first set was resolved by name.
+        // Tied parameters follow their leader, with the ties of the first set, which was resolved by name.
         places
             .iter()
             .zip(own)
@@ -54,7 +55,7 @@ pub fn resolve(model: &Loaded, names: &[String], given: ArrayView2<'_, f64>) -> 
     Ok(Sets { p, leader })
 }
 
-/// One set, or every sentence on what is wrong with it.
+/// One set, or all messages on what is wrong with it.
 fn by_name(about: &About, names: &[String], given: ArrayView1<'_, f64>) -> Result<Values, String> {
     let given: BTreeMap<String, f64> = names.iter().cloned().zip(given.iter().copied()).collect();
     Values::resolve(about, &given, &BTreeMap::new()).map_err(|problems| {

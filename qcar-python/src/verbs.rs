@@ -1,5 +1,5 @@
-//! What the verbs of the command line do with a campaign, for Python. Results go over as the JSON that `docs/json.md` describes, with
-//! arrays beside it.
+//! The verbs of the command line on a campaign, for Python. Results are passed as the JSON of `docs/json.md`, with
+//! arrays in addition.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -68,7 +68,7 @@ pub fn fit_campaign<'py>(
 }
 
 /// # Errors
-/// A nonlinear model, whose transmissibilities hold for one level alone.
+/// Fails for a nonlinear model, whose transmissibilities hold for one level only.
 fn refuse_nonlinear(campaign: &Path, model: Option<&str>) -> Result<(), Failure> {
     let model = catalogue::of_campaign(&Campaign::open(campaign)?, model)?;
     let about = model.about();
@@ -124,10 +124,10 @@ pub fn simulate_campaign<'py>(
     Ok((simulated.json(), histories.collect()))
 }
 
-/// How much of a model is simulated.
+/// Variant of a model.
 ///
 /// # Errors
-/// A name that is none of the three.
+/// Fails if the name is none of the three.
 pub fn variant_named(name: &str) -> PyResult<simulate::VariantName> {
     match name {
         "complete" => Ok(simulate::VariantName::Complete),
@@ -140,10 +140,10 @@ pub fn variant_named(name: &str) -> PyResult<simulate::VariantName> {
     }
 }
 
-/// JSON, the text of the model with what was found, the values of its parameters, the answer in words, and a figure.
+/// JSON, the text of the model with the findings, the values of its parameters, the answer in words, and a figure.
 type Found = (String, Option<String>, Vec<(String, f64)>, String, String);
 
-/// What the model of a campaign lacks.
+/// Searches for the effects that the model of a campaign lacks.
 #[pyfunction]
 pub fn discover_in_campaign(py: Python<'_>, campaign: PathBuf, model: Option<String>) -> PyResult<Found> {
     let search = || discover::discover(&campaign, model.as_deref(), None, Numbers::default());
@@ -158,7 +158,7 @@ pub fn discover_in_campaign(py: Python<'_>, campaign: PathBuf, model: Option<Str
     ))
 }
 
-/// The facts of the vehicle and the parameter values in a file or campaign.
+/// The vehicle data and the parameter values in a file or campaign.
 #[pyfunction]
 pub fn read_values(path: PathBuf) -> PyResult<(BTreeMap<String, f64>, BTreeMap<String, f64>)> {
     let read = |path: &Path| -> Result<_, Failure> {

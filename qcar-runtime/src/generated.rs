@@ -1,7 +1,7 @@
 //! Support for generated models.
 //!
-//! Here slices become arrays of fixed size, once for a call, so that no bounds check is left in straight-line code; and
-//! here a frequency response is cut into blocks of lines, over which that code runs in a loop that LLVM vectorises.
+//! Slices become arrays of fixed size once per call, so that straight-line code needs no bounds checks. A frequency
+//! response is cut into blocks of lines, over which that code runs in a loop that LLVM vectorises.
 
 use std::ops::Index;
 
@@ -10,7 +10,7 @@ use nalgebra::SMatrix;
 use crate::model::{About, Entry, LANES, Lanes, Matrix, ResponseMut};
 use crate::vectors::{Loops, widest};
 
-/// How many lines of a frequency response are computed together: a cache line of each row.
+/// Number of lines of a frequency response that are computed together: a cache line of each row.
 pub const LINES: usize = LANES;
 
 /// The state-space form `dx = A x + B u`, `y = C x + D u` of a model with N states, M inputs and O outputs.
@@ -41,18 +41,18 @@ impl<const N: usize, const M: usize, const O: usize> StateSpace<N, M, O> {
 /// The derivatives of A, B, C and D by each parameter, dense and by name: `jacobians.a["k_tire"]` is ∂A/∂k_tire.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Jacobians<const N: usize, const M: usize, const O: usize> {
-    /// Of A.
+    /// Derivatives of A.
     pub a: ByParameter<SMatrix<f64, N, N>>,
-    /// Of B.
+    /// Derivatives of B.
     pub b: ByParameter<SMatrix<f64, N, M>>,
-    /// Of C.
+    /// Derivatives of C.
     pub c: ByParameter<SMatrix<f64, O, N>>,
-    /// Of D.
+    /// Derivatives of D.
     pub d: ByParameter<SMatrix<f64, O, M>>,
 }
 
 impl<const N: usize, const M: usize, const O: usize> Jacobians<N, M, O> {
-    /// Puts each nonzero where it belongs; all others are zero.
+    /// Builds the matrices from their nonzeros and the positions of these.
     pub fn new(names: &'static [&'static str], places: &[(Entry, u16)], nonzeros: &[f64]) -> Self {
         let mut all = Jacobians {
             a: ByParameter::zeros(names),
@@ -82,7 +82,7 @@ pub struct ByParameter<T> {
 }
 
 impl<T> ByParameter<T> {
-    /// The matrix of a parameter; none where the model has no parameter of this name.
+    /// The matrix of a parameter; `None` if the model has no parameter of this name.
     pub fn get(&self, name: &str) -> Option<&T> {
         let place = self.names.iter().position(|own| *own == name)?;
         Some(&self.matrices[place])
@@ -106,7 +106,7 @@ impl<T> Index<&str> for ByParameter<T> {
 
     /// # Panics
     ///
-    /// Where the model has no parameter of this name; [`ByParameter::get`] asks first.
+    /// If the model has no parameter of this name; [`ByParameter::get`] returns `None` instead.
     #[track_caller]
     fn index(&self, name: &str) -> &T {
         self.get(name)
@@ -114,8 +114,8 @@ impl<T> Index<&str> for ByParameter<T> {
     }
 }
 
-/// A derivative of the piecewise cubic curve through points, of an order from 0 to 3, at `x`; beyond its ends it is a
-/// straight line. At a knot, those above the first are of the piece above it.
+/// A derivative at `x`, of an order from 0 to 3, of the piecewise cubic curve through points, which continues as a
+/// straight line beyond its ends. At a knot, derivatives above the first are those of the piece above it.
 pub fn table<const N: usize>(order: u8, x: f64, knots: &[f64; N], values: &[f64; N], slopes: &[f64; N]) -> f64 {
     let right = knots.partition_point(|&knot| knot <= x);
     let left = right.saturating_sub(1);
@@ -139,7 +139,7 @@ pub fn table<const N: usize>(order: u8, x: f64, knots: &[f64; N], values: &[f64;
 ///
 /// # Panics
 ///
-/// Where there are fewer.
+/// If there are fewer.
 #[inline]
 #[track_caller]
 pub fn fixed<T, const N: usize>(slice: &[T]) -> &[T; N] {
@@ -150,7 +150,7 @@ pub fn fixed<T, const N: usize>(slice: &[T]) -> &[T; N] {
 ///
 /// # Panics
 ///
-/// Where there are fewer.
+/// If there are fewer.
 #[inline]
 #[track_caller]
 pub fn fixed_mut<T, const N: usize>(slice: &mut [T]) -> &mut [T; N] {
@@ -164,7 +164,7 @@ fn too_short(length: usize, needed: usize) -> ! {
     panic!("a slice of {length} values where a model needs {needed}")
 }
 
-/// Says that a model has no such excitation.
+/// Panics because a model has no such excitation.
 ///
 /// # Panics
 ///
@@ -179,7 +179,7 @@ pub fn no_response(about: &About, excitation: usize) -> ! {
     )
 }
 
-/// -1, 0 or 1: at rest there is no direction.
+/// -1, 0 or 1; the sign of zero is 0.
 #[inline]
 pub fn sign(value: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value.signum() }
@@ -187,18 +187,18 @@ pub fn sign(value: f64) -> f64 {
 
 /// The straight-line code of a frequency response: `R` rows at a block of lines.
 ///
-/// `compute` is to be inlined always: it is compiled once for each instruction set that [`respond`] knows.
+/// `compute` must be marked `inline(always)`, since it is compiled once for each instruction set that [`respond`]
+/// supports.
 pub trait Block<const R: usize> {
     /// The rows at these frequencies, rad/s.
     fn compute(&self, frequencies: &[f64; LINES], rows: &mut [[f64; LINES]; R]);
 }
 
-/// Runs `block` over all lines and puts its rows where they are wanted: real parts, imaginary parts, and the same of
-/// the Jacobian.
+/// Runs `block` over all lines and stores its rows: real parts, imaginary parts, and both parts of the Jacobian.
 ///
 /// # Panics
 ///
-/// Where the rows of `into` are not `R` rows of `omega.len()` lines.
+/// If `into` does not have `R` rows of `omega.len()` lines.
 #[inline]
 pub fn respond<const R: usize>(omega: &[f64], mut into: ResponseMut<'_>, block: &impl Block<R>) {
     let jacobian = into.jacobian.as_ref().map_or(0, |(re, im)| re.len() + im.len());
@@ -230,17 +230,18 @@ pub fn respond<const R: usize>(omega: &[f64], mut into: ResponseMut<'_>, block: 
 
 /// Straight-line code for several parameter sets at once, with `R` results.
 ///
-/// `compute` is to be inlined always: it is compiled once for each instruction set that [`together`] knows.
+/// `compute` must be marked `inline(always)`, since it is compiled once for each instruction set that [`together`]
+/// supports.
 pub trait Sets<const R: usize> {
     /// The results, a row for each.
     fn compute(&self, rows: &mut [Lanes; R]);
 }
 
-/// Computes what is wanted of several parameter sets, with the widest vectors of this machine.
+/// Computes `sets` with the widest vectors of this machine.
 ///
 /// # Panics
 ///
-/// Where there are fewer rows than results.
+/// If there are fewer rows than results.
 #[inline]
 pub fn together<const R: usize>(sets: &impl Sets<R>, rows: &mut [Lanes]) {
     let rows = fixed_mut(rows);

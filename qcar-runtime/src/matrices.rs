@@ -16,7 +16,7 @@ pub fn at_rest(model: &(impl Model + ?Sized), p: &[f64]) -> Vec<f64> {
     nonzeros
 }
 
-/// Those of their parameter Jacobians, in the order of [`About::sensitivities`].
+/// The nonzeros of their parameter Jacobians at rest, in the order of [`About::sensitivities`].
 pub fn sensitivities_at_rest(model: &(impl Model + ?Sized), p: &[f64]) -> Vec<f64> {
     let (x, u) = rest(model.about());
     let mut nonzeros = vec![0.0; model.about().sensitivities.len()];
@@ -24,7 +24,7 @@ pub fn sensitivities_at_rest(model: &(impl Model + ?Sized), p: &[f64]) -> Vec<f6
     nonzeros
 }
 
-/// One of the matrices, from the nonzeros of all.
+/// One of the matrices in dense form, from the nonzeros of all.
 pub(crate) fn dense(about: &About, which: Matrix, nonzeros: &[f64]) -> DMatrix<f64> {
     let rows = match which {
         Matrix::A | Matrix::B => about.states.len(),

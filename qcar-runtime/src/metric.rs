@@ -1,7 +1,7 @@
-//! Metrics of an axle: one name, one value, one derivative by each parameter.
+//! Metrics of an axle: each has a name, a value and a derivative by each parameter.
 //!
-//! A [`Metric`] is spelled the same wherever it is asked for: `body_x.peak`, `wheel_z.vdv`, `tyre.dynamic_load`,
-//! `suspension.travel`, `pad_to_body.peak`, `mode.1.damping`. A [`Ground`] measures them of a model.
+//! A [`Metric`] has the same name everywhere: `body_x.peak`, `wheel_z.vdv`, `tyre.dynamic_load`, `suspension.travel`,
+//! `pad_to_body.peak`, `mode.1.damping`. A [`Ground`] computes them for a model.
 
 // A model with the suspension's travel as an additional output.
 mod watched;

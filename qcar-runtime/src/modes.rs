@@ -126,8 +126,8 @@ impl Moved {
 }
 
 /// The modal assurance criterion `|a·b|² / (|a|² |b|²)` over the points that both models have (Allemang, "The Modal
-/// Assurance Criterion", Sound and Vibration 37 (2003)), times how much of both modes these points are: a vibration of
-/// what only one model has is like none of the other.
+/// Assurance Criterion", Sound and Vibration 37 (2003)), times the share of these points in both modes: a mode of
+/// points that only one model has resembles none of the other.
 fn likeness(first: &Moved, second: &Moved) -> f64 {
     let square = |of: &Moved, among: &Moved| {
         let common = of.shape.iter().filter(|(point, _)| among.at(*point).is_some());
@@ -144,7 +144,7 @@ fn likeness(first: &Moved, second: &Moved) -> f64 {
     }
 }
 
-/// A at rest.
+/// The matrix A at rest.
 pub(crate) fn dynamics(model: &(impl Model + ?Sized), p: &[f64]) -> DMatrix<f64> {
     dense(model.about(), Matrix::A, &at_rest(model, p))
 }

@@ -16,7 +16,8 @@ pub fn map<T: Sync, U: Send>(items: &[T], on_progress: OnProgress<'_>, work: imp
     map_with(items, on_progress, || (), |(), item| work(item))
 }
 
-/// The same with a buffer from `buffer` that a thread keeps from one item to the next. It must not change any result.
+/// The same with a value from `buffer` that a thread keeps from one item to the next. The value must not affect any
+/// result.
 pub fn map_with<T: Sync, R, U: Send>(
     items: &[T],
     on_progress: OnProgress<'_>,

@@ -1,4 +1,4 @@
-//! The model seen as the measurement sees it: ratios of two signals over frequency, with their parameter Jacobian.
+//! Model predictions of measured channels: ratios of two signals over frequency, with their parameter Jacobian.
 
 // Values of all parameters, including those tied to others.
 pub mod parameters;
@@ -24,7 +24,7 @@ pub struct Response<'m, M: ?Sized> {
     excitation: usize,
     omega: Vec<f64>,
     layout: ResponseLayout,
-    /// Where a nonlinear model is linearised; `None` for a linear one.
+    /// The operating point of a nonlinear model; `None` for a linear one.
     about: Option<OperatingPoint>,
     constants: Vec<f64>,
     re: Vec<f64>,
@@ -41,7 +41,7 @@ impl<'m, M: Model + ?Sized> Response<'m, M> {
         Self::with_point(model, excitation, frequency, point)
     }
 
-    /// A response of a nonlinear model about `point`, which is held while parameters change.
+    /// A response of a nonlinear model about `point`, which stays the same if parameters change.
     pub fn at(model: &'m M, excitation: usize, frequency: &[f64], point: OperatingPoint) -> Self {
         Self::with_point(model, excitation, frequency, Some(point))
     }
@@ -82,7 +82,7 @@ impl<'m, M: Model + ?Sized> Response<'m, M> {
         self.compute(p, false);
     }
 
-    /// Whether the Jacobian has been computed, too.
+    /// True if the Jacobian has been computed too.
     pub fn has_jacobian(&self) -> bool {
         self.jacobian_re.len() == self.layout.jacobian.len() * self.omega.len()
     }
@@ -107,7 +107,7 @@ impl<'m, M: Model + ?Sized> Response<'m, M> {
         &self.omega
     }
 
-    /// What each row is.
+    /// The meaning of each row.
     pub fn layout(&self) -> &ResponseLayout {
         &self.layout
     }

@@ -173,7 +173,7 @@ impl Road {
 
     /// Positions of steps and kinks, m, without the small turns between the chords of a curve.
     pub(crate) fn edges(&self) -> impl Iterator<Item = [f64; 2]> {
-        /// Sine of the least turn, either way.
+        /// Smallest sine of the angle of a kink, in either direction.
         const SHARP: f64 = 0.02;
         let turn = |[a, b]: [[f64; 2]; 2]| a[0] * b[1] - a[1] * b[0];
         let turns = self.segments.windows(2).map(move |w| turn([w[0].along, w[1].along]));
@@ -288,7 +288,7 @@ fn segments(vertices: &[[f64; 2]]) -> Vec<Segment> {
         .collect()
 }
 
-/// Cells of equal width that say how many vertices lie before them, so that a look-up walks over few.
+/// Cells of equal width with the number of vertices before each, so that a search passes only few vertices.
 #[derive(Clone, Debug)]
 struct Index {
     first: f64,

@@ -1,9 +1,9 @@
-//! The wheel, its road and the body of a model, which tests refer to whatever their names.
+//! The wheel, its road and the body of a model, to which tests refer independently of names.
 //!
-//! The **wheel** is the mass on the tyre, the **road** what the tyre stands on. The **body** is what a K&C rig holds while
-//! it moves the wheel: the only other mass that moves along the tyre's axis or, among several, the one whose mass is what the
-//! wheel and others leave of a total, as in `m_corner - m_wheel - m_subframe`. A campaign that knows better says so in its
-//! `[roles]`.
+//! The **wheel** is the mass on the tyre, the **road** the motion under the tyre. The **body** is the mass that a K&C
+//! rig holds while it moves the wheel. It is the only other mass that moves along the tyre's axis; of several, it is
+//! the one whose mass is a total minus the wheel and others, as in `m_corner - m_wheel - m_subframe`. A campaign can
+//! set other roles in its `[roles]`.
 
 use thiserror::Error;
 

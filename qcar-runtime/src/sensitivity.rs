@@ -1,10 +1,11 @@
-//! How metrics depend on parameters, locally by derivatives and over a range by shares of variance, and how uncertain they are.
+//! Sensitivity of metrics to parameters (local derivatives, and shares of the variance over a range), and their
+//! uncertainty.
 
 // Derivatives at a design.
 mod local;
 // Shares of the variance over a range.
 mod sobol;
-// Intervals of uncertain parameters, and of the metrics that follow.
+// Intervals of metrics that follow from uncertain parameters.
 mod interval;
 // Distributions of metrics under uncertain parameters.
 mod chance;

@@ -132,7 +132,7 @@ pub enum Reason {
     NotFinite,
     /// The tolerance cannot be met after this time with a step that still advances the time.
     StepTooSmall,
-    /// Events accumulate after this time, as those of a ball that comes to rest.
+    /// Events accumulate after this time, as for a ball that comes to rest.
     Crowded,
     /// The limit of attempted steps was reached.
     TooManySteps,

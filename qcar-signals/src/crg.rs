@@ -1,7 +1,9 @@
-//! OpenCRG, the roads of ASAM: heights on a grid along a reference line (u) and across it (v, positive to the left).
+//! OpenCRG, the road format of ASAM: heights on a grid along a reference line (u) and across it (v, positive to the
+//! left).
 //!
-//! Each longitudinal section becomes a channel, named after its place such as `v=-1.5`, whose samples are heights over the
-//! channel `u`: the grid, on the height of the reference line and on its banking. Source: ASAM OpenCRG 1.2, data format.
+//! Each longitudinal section becomes a channel, named after its position such as `v=-1.5`, whose samples are heights
+//! over the channel `u`. They are the sum of the grid, the height of the reference line and its banking. Source: ASAM
+//! OpenCRG 1.2, data format.
 
 // The text above the data.
 mod header;
@@ -21,10 +23,10 @@ use grid::Grid;
 use header::{Header, RECORD, section};
 use line::Line;
 
-/// Of the content, where a file tells what it is.
+/// Number of bytes in which the format is recognised.
 const HEAD: usize = 1 << 16;
 
-/// Whether the head of a file has a section of road parameters.
+/// True if the beginning of a file has a section of road parameters.
 pub(crate) fn is_crg(bytes: &[u8]) -> bool {
     let head = &bytes[..bytes.len().min(HEAD)];
     let mut lines = head.split(|&byte| byte == b'\n');

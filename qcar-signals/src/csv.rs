@@ -40,12 +40,12 @@ pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
     Ok(recording)
 }
 
-/// True if the text has characters that no table has. (`1a` ended texts of DOS.)
+/// True if the text has characters that do not occur in tables. (`1a` marked the end of texts in DOS.)
 fn is_binary(text: &str) -> bool {
     text.contains(|letter: char| letter.is_control() && !letter.is_whitespace() && letter != '\u{1a}')
 }
 
-/// Binary data that are recognised as no other format begin like this.
+/// The fault of binary data of an unknown format, with their beginning.
 fn of_no_format(bytes: &[u8]) -> Box<Fault> {
     let beginning = bytes[..bytes.len().min(8)].escape_ascii();
     Fault::new(

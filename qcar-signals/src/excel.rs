@@ -10,20 +10,20 @@ use crate::error::{Fault, Place, Read};
 use crate::signal::{Recording, Scalar, Value};
 use crate::table::{Cell, Column, Filled, Layout};
 
-/// What a file that is packed as ZIP begins with.
+/// The first bytes of a ZIP file.
 pub(crate) const MAGIC: &[u8] = b"PK\x03\x04";
-/// What workbooks of Excel before 2007 begin with.
+/// The first bytes of workbooks of Excel before 2007.
 pub(crate) const OLD_MAGIC: &[u8] = b"\xd0\xcf\x11\xe0";
-/// What stands before the directory at the end of a ZIP file, at most so many bytes before the end.
+/// The signature of the directory at the end of a ZIP file, and its largest distance from the end, bytes.
 const DIRECTORY_END: (&[u8], usize) = (b"PK\x05\x06", 65_557);
 /// Number of rows that are searched for the first numbers of a sheet.
 const HEAD: usize = 64;
-/// Columns of a sheet.
+/// Largest number of columns of a sheet.
 const MOST_COLUMNS: u32 = 16_384;
-/// Cells of a table for each one that is filled.
+/// Largest number of cells of a table for each filled cell.
 const MOST_EMPTY: usize = 64;
 
-/// Refuses a workbook of a kind that nothing here reads.
+/// Refuses a workbook of a kind that is not supported.
 pub(crate) fn refuse_old() -> Box<Fault> {
     let remedy = "open it in Excel and save it as .xlsx";
     Fault::new(
@@ -46,7 +46,7 @@ pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
             "a whole .xlsx file, which ends with one",
         ));
     }
-    // A few sums in that crate are not checked; what trips over them is no workbook.
+    // Some sums in that crate are not checked and may panic on a damaged workbook.
     catch_unwind(|| workbook(bytes)).unwrap_or_else(|_| {
         let remedy = "open it in Excel and save it again as .xlsx";
         Err(Fault::new(
@@ -88,7 +88,7 @@ fn unreadable(place: Place, error: &XlsxError) -> Box<Fault> {
     )
 }
 
-/// A sheet: its cells that are filled, by row and column from 0.
+/// A sheet: its filled cells, by row and column from 0.
 struct Sheet {
     name: String,
     rows: BTreeMap<u32, BTreeMap<u32, Cell>>,
@@ -106,7 +106,7 @@ impl Sheet {
         let unreadable = |error| unreadable(Place::Sheet(name.into(), "A1".into()), &error);
         let mut cells = match workbook.worksheet_cells_reader(name) {
             Ok(cells) => cells,
-            // A chart on a sheet of its own has no cells.
+            // A sheet that is a chart has no cells.
             Err(XlsxError::NotAWorksheet(_)) => return Ok(sheet),
             Err(error) => return Err(unreadable(error)),
         };
@@ -228,7 +228,7 @@ impl Sheet {
     }
 }
 
-/// A row with the cells that are empty, up to the last one that is not.
+/// A row including its empty cells, up to the last filled one.
 fn dense(row: &BTreeMap<u32, Cell>) -> Vec<Cell> {
     let width = row.keys().next_back().map_or(0, |last| *last as usize + 1);
     let mut cells = vec![Cell::Missing; width];
@@ -238,7 +238,7 @@ fn dense(row: &BTreeMap<u32, Cell>) -> Vec<Cell> {
     cells
 }
 
-/// As Excel writes it: B7 for row 6 and column 1.
+/// The name of a cell in Excel: B7 for row 6 and column 1, counted from 0.
 fn cell_name(row: u32, mut column: u32) -> String {
     let mut letters = Vec::new();
     loop {

@@ -14,8 +14,8 @@ pub enum Wanted<'a> {
     All,
     /// Those that match one of these patterns, as in [`Recording::find`].
     These(&'a [String]),
-    /// None. If the format interleaves its channels, so that one is not read without going through all, a summary of each is made
-    /// instead ([`Samples::made_summary`](crate::samples::Samples::made_summary)).
+    /// None. If the format interleaves its channels, so that reading one means passing all, each gets a summary instead
+    /// ([`Samples::stored_summary`](crate::samples::Samples::stored_summary)).
     Summaries,
 }
 

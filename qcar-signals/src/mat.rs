@@ -16,17 +16,17 @@ use crate::error::{Fault, Place, Read};
 use crate::find::Wanted;
 use crate::signal::Recording;
 
-/// Where the header of version 5 says its version and its byte order.
+/// Position of the version and the byte order in the header of version 5.
 const VERSION: usize = 124;
 /// Bytes of a header; in a file of version 7.3 HDF5 begins at byte 512.
 pub(crate) const HEADER: usize = 128;
 
-/// Whether a file begins with the header of a MAT-file of version 5 or later.
+/// True if a file begins with the header of a MAT-file of version 5 or later.
 pub(crate) fn is_mat(bytes: &[u8]) -> bool {
     bytes.len() >= HEADER && matches!(&bytes[VERSION + 2..HEADER], b"IM" | b"MI") && bytes[..4] != [0; 4]
 }
 
-/// Whether a file is HDF5 without the header of MATLAB.
+/// True for HDF5 without the header of MATLAB.
 pub(crate) fn is_hdf5(bytes: &[u8]) -> bool {
     bytes.starts_with(hdf5::SIGNATURE)
 }

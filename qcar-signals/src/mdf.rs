@@ -1,6 +1,7 @@
 //! MDF, the format of ASAM for measured data: version 4 and version 3.
 //!
-//! Source: ASAM MDF 4.1 and 3.3 as described in public; the layout of each block stands where it is read.
+//! Source: public descriptions of ASAM MDF 4.1 and 3.3. The layout of each block is described at the function that
+//! reads it.
 
 mod conversion;
 // The position of a value in a record.
@@ -31,9 +32,9 @@ use conversion::Conversion;
 use data::Data;
 use field::Field;
 
-/// What an MDF file begins with.
+/// The first bytes of an MDF file.
 pub(crate) const MAGIC: &[u8] = b"MDF     ";
-/// What one begins with that its writer never closed.
+/// The first bytes of a file that its writer did not close.
 pub(crate) const UNFINISHED: &[u8] = b"UnFinMF ";
 
 /// Reads a file that begins with one of the two.
@@ -63,7 +64,7 @@ pub(crate) fn read(file: Bytes, wanted: &Wanted) -> Read<Recording> {
     }
 }
 
-/// The blocks of a chain that were visited: a chain that comes back to one of them never ends.
+/// The visited blocks of a chain; a chain that returns to one of them would never end.
 #[derive(Default)]
 struct Visited(HashSet<u64>);
 
@@ -77,7 +78,7 @@ impl Visited {
     }
 }
 
-/// What a channel is in its group.
+/// Role of a channel in its group.
 #[derive(Clone, Copy, PartialEq)]
 enum Role {
     /// Values.
@@ -86,22 +87,22 @@ enum Role {
     Time,
 }
 
-/// A channel, with all that is needed to take its values out of records.
+/// A channel, with everything that is needed to extract its values from records.
 struct Channel {
     name: String,
     unit: String,
     role: Role,
-    /// Where its values lie, or why they are passed over.
+    /// Position of its values, or why they are left out.
     field: Result<Field, String>,
     conversion: Result<Conversion, String>,
     place: Place,
 }
 
-/// What is made of the stored values of a channel as its records are read.
+/// Result of reading the stored values of a channel.
 enum Column<'c> {
-    /// They are kept as they are stored.
+    /// The stored values.
     Kept(Vec<f64>),
-    /// A summary of the physical values; the last are those of a piece.
+    /// A summary of the physical values, with a buffer for those of a piece.
     Summarised(&'c Conversion, Summary, Vec<f64>),
 }
 
@@ -119,28 +120,28 @@ impl Column<'_> {
     }
 }
 
-/// Records of a group, one after the other.
+/// Records of a group, one after another.
 struct Records<'a> {
     data: &'a Data<'a>,
-    /// From record to record, bytes.
+    /// Distance from record to record, bytes.
     stride: usize,
     /// Bytes of the id before each record.
     before: usize,
     count: usize,
 }
 
-/// Some of them, in memory.
+/// Some records, in memory.
 struct Piece<'a> {
     bytes: &'a [u8],
     stride: usize,
     before: usize,
-    /// The number of the first, from 0.
+    /// The number of the first record, from 0.
     first: usize,
     count: usize,
 }
 
 impl<'a> Records<'a> {
-    /// The records that a group promises, if they are there.
+    /// The declared records of a group; fails if the file does not contain them.
     fn checked(
         data: &'a Data<'a>,
         before: usize,
@@ -163,17 +164,18 @@ impl<'a> Records<'a> {
         })
     }
 
-    /// A column of values that are to be kept.
+    /// A column that stores its values.
     fn kept<'c>(&self) -> Column<'c> {
         Column::Kept(Vec::with_capacity(if self.data.is_there() { self.count } else { 0 }))
     }
 
-    /// A column of values that are to be summarised.
+    /// A column that summarises its values.
     fn summarised<'c>(&self, conversion: &'c Conversion) -> Column<'c> {
         Column::Summarised(conversion, Summary::new(self.count), Vec::new())
     }
 
-    /// Fills columns with the values of their fields. The records are read once, and channel by channel while they are in the cache.
+    /// Fills columns with the values of their fields. The records are read once in pieces, and each piece is processed
+    /// channel by channel while it is in the cache.
     fn fill(&self, columns: &mut [(&Field, Column)]) -> Read<()> {
         if columns.is_empty() || self.count == 0 {
             return Ok(());
@@ -196,8 +198,8 @@ impl<'a> Records<'a> {
     }
 }
 
-/// How often in total the bits of a record may be used by channels. Parts of a value may be channels of their own, but
-/// a small file shall not become a large one.
+/// Largest number of bits of all channels, relative to those of a record. Parts of a value may be further channels, but
+/// a small file must not need a large memory.
 const MOST_USES: usize = 16;
 
 /// Adds the channels of a group to a recording.
@@ -231,7 +233,7 @@ fn add_group(
     let is_any = channels.iter().any(is_wanted);
     let is_read =
         |channel: &Channel| is_wanted(channel) || (is_any && channel.role == Role::Time && !channel.is_even());
-    // The index of a channel beside what is read of it.
+    // Pairs of the index of a channel and its values.
     let (mut places, mut columns) = (Vec::new(), Vec::new());
     for (place, channel) in channels.iter().enumerate().filter(|(_, channel)| is_read(channel)) {
         if let (Ok(field), Ok(conversion)) = (&channel.field, &channel.conversion) {
@@ -299,7 +301,7 @@ fn add_group(
 }
 
 impl Channel {
-    /// Whether its values are no part of a record but follow from the number of it.
+    /// True if its values follow from the number of the record instead of its content.
     fn is_even(&self) -> bool {
         matches!(
             (&self.field, &self.conversion),
@@ -308,7 +310,7 @@ impl Channel {
     }
 }
 
-/// The times of a group in seconds from what is stored, or why it has none.
+/// The times of a group in seconds from the stored values, or why it has none.
 fn times(master: &Channel, mut stored: Vec<f64>) -> Result<TimeBase, String> {
     let (field, conversion) = match (&master.field, &master.conversion) {
         (Ok(field), Ok(conversion)) => (field, conversion),

@@ -1,9 +1,9 @@
 //! RPC III, the format of MTS for drive and response files: parameters of 32 and 96 characters in blocks of 512 bytes, then
 //! groups of frames.
 //!
-//! A group holds all samples of the first channel, then all of the second and so on (demultiplexed), or, where `TIME_TYPE`
-//! begins with `MULT`, the first samples of all channels, then the second ones (multiplexed). The last group is stored in full
-//! however many of its frames count.
+//! A group contains all samples of the first channel, then all of the second and so on (demultiplexed). If `TIME_TYPE`
+//! begins with `MULT`, it contains the first samples of all channels, then the second ones (multiplexed). The last
+//! group is stored in full, even if only some of its frames are valid.
 
 use std::collections::HashMap;
 
@@ -15,11 +15,11 @@ use crate::signal::{Recording, Signal, Source, evenly};
 use crate::summary::Summary;
 
 const BLOCK: u64 = 512;
-/// Of a parameter and its name.
+/// Bytes of a parameter and of its name.
 const PARAMETER: usize = 128;
 const NAME: usize = 32;
 
-/// Whether a file begins as one of RPC III.
+/// True if a file begins like RPC III.
 pub(crate) fn is_rpc(bytes: &[u8]) -> bool {
     bytes.len() >= PARAMETER && field(&bytes[..NAME]) == "FORMAT"
 }
@@ -62,17 +62,17 @@ pub(crate) fn read(file: Bytes, wanted: &Wanted) -> Read<Recording> {
     Ok(recording)
 }
 
-/// The samples of a channel as far as they are read.
+/// The samples of a channel that are read so far.
 struct Column {
     channel: usize,
     read: Samplewise,
 }
 
 enum Samplewise {
-    /// As they are stored, with the factor of physical values.
+    /// Stored samples, with the factor to physical values.
     Shorts(Vec<i16>, f64),
     Singles(Vec<f32>),
-    /// Summarised: kind and factor of the samples, and how many are still to come.
+    /// A summary, with kind and factor of the samples and their remaining number.
     Summarised {
         summary: Summary,
         kind: Kind,
@@ -128,7 +128,7 @@ impl Column {
         }
     }
 
-    /// The first of them.
+    /// The first `count` samples.
     fn samples(self, count: usize) -> Samples {
         match self.read {
             Samplewise::Summarised { summary, .. } => Samples::summarised(summary),
@@ -204,7 +204,7 @@ impl Header {
         self.number(name, "a whole number")
     }
 
-    /// Units in a step of a channel. Stored floating-point numbers are physical values.
+    /// Physical value of one step of a channel. Stored floating-point numbers are physical values.
     fn scale(&self, channel: usize, kind: Kind) -> Read<f64> {
         let name = format!("SCALE.CHAN_{}", channel + 1);
         if kind == Kind::Short {
@@ -228,16 +228,16 @@ fn parameters(header: &[u8]) -> HashMap<String, String> {
     entries.filter(|(name, _)| !name.is_empty()).collect()
 }
 
-/// How a sample is stored.
+/// Storage type of a sample.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
-    /// A step of the channel's scale.
+    /// A number of steps of the channel's scale.
     Short,
     Single,
 }
 
 impl Kind {
-    /// Bytes.
+    /// Size, bytes.
     fn size(self) -> usize {
         match self {
             Kind::Short => 2,
@@ -246,13 +246,13 @@ impl Kind {
     }
 }
 
-/// How the samples lie.
+/// Arrangement of the samples.
 struct Shape {
     channels: usize,
     frames: usize,
     points_of_frame: usize,
     points_of_group: usize,
-    /// Of a channel.
+    /// Number of samples of a channel.
     samples: usize,
     step: f64,
     kind: Kind,
@@ -314,7 +314,7 @@ impl Shape {
             .map_or(0, |_| points.div_ceil(self.points_of_group))
     }
 
-    /// Checks that all groups are there.
+    /// Checks that the file contains all groups.
     fn check(&self, data: &Bytes) -> Read<()> {
         let Shape {
             channels,

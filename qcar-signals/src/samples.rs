@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::summary::Summary;
 
-/// Physical values; not a number where the file has no valid one.
+/// Physical values; NaN if the file has no valid one.
 #[derive(Clone, Debug)]
 pub struct Samples(Stored);
 
@@ -14,12 +14,12 @@ enum Stored {
     Singles(Vec<f32>),
     /// Values to be multiplied by a factor.
     Shorts(Vec<i16>, f64),
-    /// They were summarised as they were read, and none is kept.
+    /// A summary from one pass over the samples, of which none is stored.
     Summarised(Box<Summary>),
 }
 
 impl Samples {
-    /// Of single precision.
+    /// Samples of single precision.
     pub(crate) fn singles(samples: Vec<f32>) -> Self {
         Samples(Stored::Singles(samples))
     }
@@ -29,12 +29,12 @@ impl Samples {
         Samples(Stored::Shorts(stored, factor))
     }
 
-    /// None, of which a summary was made as they were read.
+    /// A summary without samples.
     pub(crate) fn summarised(summary: Summary) -> Self {
         Samples(Stored::Summarised(Box::new(summary)))
     }
 
-    /// How many there are.
+    /// Number of samples.
     pub fn len(&self) -> usize {
         match &self.0 {
             Stored::Doubles(own) => own.len(),
@@ -75,15 +75,15 @@ impl Samples {
         of.map(|index| self.at(index))
     }
 
-    /// The summary that was made of them as they were read, without them.
-    pub fn made_summary(&self) -> Option<&Summary> {
+    /// The summary that is stored instead of samples; `None` if the samples are stored.
+    pub fn stored_summary(&self) -> Option<&Summary> {
         match &self.0 {
             Stored::Summarised(summary) => Some(summary),
             Stored::Doubles(_) | Stored::Singles(_) | Stored::Shorts(..) => None,
         }
     }
 
-    /// Their range and course.
+    /// The summary of the samples.
     pub fn summary(&self) -> Summary {
         match &self.0 {
             Stored::Summarised(summary) => (**summary).clone(),
@@ -105,7 +105,7 @@ fn summary(samples: impl ExactSizeIterator<Item = f64>) -> Summary {
     summary
 }
 
-/// None.
+/// No samples.
 impl Default for Samples {
     fn default() -> Self {
         Vec::new().into()

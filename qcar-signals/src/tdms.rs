@@ -19,7 +19,7 @@ use crate::units::{in_seconds, is_time, seconds};
 use metadata::{Index, Layout, Properties, Scaler, object};
 use scaling::Scaling;
 
-/// What a segment begins with.
+/// The first bytes of a segment.
 pub(crate) const MAGIC: &[u8] = b"TDSm";
 /// Bytes of the lead-in of a segment: tag 4, contents 4, version 4, length 8, place of raw data 8.
 const LEAD_IN: u64 = 28;
@@ -60,7 +60,7 @@ pub(crate) fn read(bytes: Bytes, wanted: &Wanted) -> Read<Recording> {
     file.recording()
 }
 
-/// What follows the lead-in of a segment, which must be there in full.
+/// The bytes after the lead-in of a segment, which must be complete.
 fn segment<'a>(file: &Bytes<'a>, at: u64, length: u64, raw: u64, number: u32) -> Read<Bytes<'a>> {
     let there = file.len() - at - LEAD_IN;
     if length > there {
@@ -78,7 +78,7 @@ fn segment<'a>(file: &Bytes<'a>, at: u64, length: u64, raw: u64, number: u32) ->
     file.part(at + LEAD_IN, length, "a segment")
 }
 
-/// What was read of a file so far.
+/// The part of a file that was read so far.
 #[derive(Default)]
 struct File {
     objects: Vec<Object>,
@@ -93,12 +93,12 @@ struct Object {
     wanted: bool,
     place: Place,
     properties: Properties,
-    /// How its raw data lie in the present segment.
+    /// Arrangement of its raw data in the present segment.
     index: Option<Index>,
     active: bool,
-    /// Raw values; of DAQmx data a list for each scaler.
+    /// Raw values; for DAQmx data, a list for each scaler.
     raw: Vec<(Option<u32>, Vec<f64>)>,
-    /// Why its data are passed over.
+    /// Reason why its data are left out.
     unread: Option<String>,
 }
 
@@ -194,7 +194,7 @@ impl File {
         Ok(())
     }
 
-    /// Reads what the wanted objects have in a chunk.
+    /// Reads the data of the wanted objects in a chunk.
     fn add_chunk(&mut self, chunk: &Bytes, used: &[(usize, Index)], interleaved: bool) -> Read<()> {
         if interleaved {
             self.add_rows(chunk, used)?;
@@ -232,7 +232,7 @@ impl File {
         Ok(())
     }
 
-    /// The numbers of a chunk that has a value of each object in a row.
+    /// Reads a chunk in which each row has a value of each object.
     fn add_rows(&mut self, chunk: &Bytes, used: &[(usize, Index)]) -> Read<()> {
         let stride: u64 = used.iter().filter_map(|(_, index)| index.size()).sum();
         chunk.pieces(0, chunk.len(), stride, "raw data", |rows| {
@@ -348,7 +348,7 @@ impl Object {
     }
 }
 
-/// Whether the values of an object are to be read: those of a wanted channel, and what may be its times.
+/// True if the values of an object are read: for a wanted channel, and for a channel that may be its times.
 fn is_read(path: &str, wanted: &Wanted) -> bool {
     channel_of(path).is_some_and(|(group, name)| wanted.has(&group, &name) || is_time(&name))
 }

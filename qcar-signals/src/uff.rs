@@ -1,5 +1,5 @@
-//! UFF, the Universal File Format of SDRC: datasets between lines of -1. Functions over time are in datasets 58 (text) and
-//! 58b (binary); 164 says the units of the file.
+//! UFF, the Universal File Format of SDRC: datasets between lines of -1. Functions over time are in datasets 58 (text)
+//! and 58b (binary); dataset 164 gives the units of the file.
 //!
 //! Source: the definitions of the datasets that the University of Cincinnati publishes.
 
@@ -7,7 +7,7 @@ use crate::bytes::{Number, Order, text};
 use crate::error::{Fault, Place, Read};
 use crate::signal::{Recording, Signal, Source, TimeBase, evenly};
 
-/// Whether a file begins as one of UFF: a line of -1, then the number of a dataset.
+/// True if a file begins like UFF: a line of -1, then the number of a dataset.
 pub(crate) fn is_uff(bytes: &[u8]) -> bool {
     let mut lines = Lines { bytes, at: 0 };
     let first = lines.find(|line| !line.1.trim().is_empty());
@@ -58,7 +58,7 @@ fn what_else(number: u32) -> &'static str {
     }
 }
 
-/// Lines with the byte at which each begins.
+/// Lines with the position of their first byte.
 struct Lines<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -78,7 +78,7 @@ impl Iterator for Lines<'_> {
 }
 
 impl Lines<'_> {
-    /// The lines to the next border, which is passed.
+    /// The lines up to the next border; the border is skipped.
     fn until_border(&mut self, what: &str) -> Read<Vec<(u64, String)>> {
         let mut content = Vec::new();
         for line in self.by_ref() {
@@ -103,8 +103,8 @@ fn is_border(line: &str) -> bool {
     line.trim() == "-1"
 }
 
-/// The line that begins a dataset: number 6, then of a binary one `b` 1, byte order 6, kind of numbers 6, lines of text 12,
-/// bytes 12.
+/// The first line of a dataset: number 6, then for a binary one `b` 1, byte order 6, kind of numbers 6, lines of text
+/// 12, bytes 12.
 struct Header {
     number: u32,
     binary: Option<Binary>,
@@ -132,7 +132,7 @@ impl Header {
     }
 }
 
-/// Characters of a line, by their places.
+/// Characters of a line from a column to another.
 fn columns(line: &str, from: usize, to: usize) -> &str {
     let byte = |place: usize| line.char_indices().nth(place).map_or(line.len(), |(byte, _)| byte);
     line[byte(from)..byte(to)].trim()
@@ -147,7 +147,7 @@ fn number<T: std::str::FromStr>(at: u64, line: &str, from: usize, to: usize, wha
     })
 }
 
-/// Units of a file, where a function names none itself.
+/// Units of a file, for functions that state none.
 struct Units {
     length: &'static str,
     force: &'static str,
@@ -292,12 +292,13 @@ impl Function {
         })
     }
 
-    /// Numbers that belong to one sample, the time among them if it is stored.
+    /// Number of stored numbers for one sample, including the time if it is stored.
     fn numbers_of_a_sample(&self) -> u64 {
         1 + u64::from(self.complex) + u64::from(!self.even)
     }
 
-    /// The values after the text of a binary dataset. Uneven times are of single precision, unless the bytes promised say else.
+    /// The values after the text of a binary dataset. Uneven times are of single precision, unless the declared size
+    /// shows otherwise.
     fn binary(&self, lines: &mut Lines, binary: &Binary) -> Read<Numbers> {
         let place = Place::Byte(lines.at as u64);
         if !binary.ieee {
@@ -367,7 +368,7 @@ impl Function {
     }
 }
 
-/// Where a response was measured: entity, node and direction.
+/// The point of a response: entity, node and direction.
 fn point(freedom: &str) -> String {
     let direction = match columns(freedom, 51, 55) {
         "1" => "+X",

@@ -1,6 +1,6 @@
-//! A file of parameter values: TOML with `[parameters]`, each `name = value`, `name = "value unit"` or a campaign's table with its
-//! unit, and `[vehicle]`, whose facts a model may or may not use. A campaign folder stands for its `campaign.toml`. Or the
-//! workbook of a vehicle.
+//! A file of parameter values: the workbook of a vehicle, or TOML with `[parameters]` and `[vehicle]`. A parameter is
+//! `name = value`, `name = "value unit"`, or a table with its unit as in a campaign. Vehicle data may be unused by a
+//! model. A campaign folder means its `campaign.toml`.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ use toml::de::{DeTable, DeValue};
 
 use crate::files::read_text;
 
-/// What may stand beside `[parameters]`: the keys of campaigns and of their answers.
+/// Allowed keys besides `[parameters]`: those of campaigns and of results.
 const NEIGHBOURS: [&str; 13] = [
     "format",
     "workbook",
@@ -31,46 +31,47 @@ const NEIGHBOURS: [&str; 13] = [
     "effects",
 ];
 
-/// What the table of a parameter may hold: the keys of campaigns.
+/// Allowed keys of the table of a parameter: those of campaigns.
 const KEYS: [&str; 5] = ["value", "unit", "range", "fit", "comment"];
 
 /// Values by name.
 #[derive(Default)]
 pub struct ParameterFile {
-    /// The last file that was read; empty where there is none.
+    /// The last file that was read; empty without any.
     pub path: PathBuf,
-    /// Below `[parameters]`.
+    /// Values below `[parameters]`.
     pub parameters: BTreeMap<String, Stated>,
-    /// Below `[vehicle]`.
+    /// Values below `[vehicle]`.
     pub vehicle: BTreeMap<String, Stated>,
-    /// Where in a workbook a value could stand that is not given.
+    /// Empty cells of a workbook for values that are not given.
     pub blanks: BTreeMap<String, (PathBuf, Place)>,
 }
 
-/// A value and where it stands.
+/// A value and its position.
 pub struct Stated {
     /// A finite number, SI.
     pub value: f64,
-    /// The coherent SI unit of what the file declares, where it does.
+    /// The coherent SI unit of the declared unit; `None` without a unit.
     pub unit: Option<String>,
-    /// Standard error, where the file knows it.
+    /// Standard error, if the file has it.
     pub stderr: Option<f64>,
-    /// Which file.
+    /// The file.
     pub file: PathBuf,
-    /// Where in it.
+    /// Position in the file.
     pub place: Place,
 }
 
-/// The values alone.
+/// The values without positions.
 pub fn numbers(of: &BTreeMap<String, Stated>) -> BTreeMap<String, f64> {
     of.iter().map(|(name, stated)| (name.clone(), stated.value)).collect()
 }
 
 impl ParameterFile {
-    /// Reads a file, or the `campaign.toml` of a folder; below what it states, what the workbook says that it names.
+    /// Reads a file, or the `campaign.toml` of a folder. Its values take precedence over those of the workbook that it
+    /// names.
     ///
     /// # Errors
-    /// All problems of the file together.
+    /// Fails with all problems of the file.
     pub fn read(path: &Path) -> Result<ParameterFile, InputError> {
         if is_workbook(path) {
             return Ok(ParameterFile::from(Workbook::read(path, None)?));
@@ -110,7 +111,7 @@ impl ParameterFile {
         Ok(file)
     }
 
-    /// Takes over what another file states.
+    /// Adds the values of another file, which take precedence.
     pub fn overlay(&mut self, other: ParameterFile) {
         self.path = other.path;
         self.parameters.extend(other.parameters);
@@ -144,7 +145,7 @@ impl From<Workbook> for ParameterFile {
     }
 }
 
-/// A file under way.
+/// A file that is being read.
 struct Reader<'a> {
     path: &'a Path,
     text: &'a str,
@@ -153,10 +154,10 @@ struct Reader<'a> {
 
 type Table = BTreeMap<String, Stated>;
 
-/// What a file has to say here.
+/// The relevant contents of a file.
 #[derive(Default)]
 struct Tables {
-    /// Relative to the folder of the file.
+    /// Path relative to the folder of the file.
     workbook: Option<String>,
     axle: Option<String>,
     parameters: Table,
@@ -164,7 +165,7 @@ struct Tables {
 }
 
 impl Reader<'_> {
-    /// What stands below `[parameters]` and `[vehicle]`, and the workbook that is named beside them.
+    /// The contents of `[parameters]` and `[vehicle]`, and the workbook that the file names.
     fn tables(&mut self) -> Tables {
         let table = match DeTable::parse(self.text) {
             Ok(table) => table.into_inner(),
@@ -249,7 +250,7 @@ impl Reader<'_> {
         }
     }
 
-    /// `name = value`, `name = "value unit"`, or a table with `value` and perhaps `unit`.
+    /// `name = value`, `name = "value unit"`, or a table with `value` and an optional `unit`.
     fn stated(&mut self, section: &str, name: &Spanned<impl AsRef<str>>, value: &Spanned<DeValue>) -> Option<Stated> {
         let own = name.get_ref().as_ref();
         let (key, offset) = (format!("{section}.{own}"), name.span().start);
@@ -288,7 +289,7 @@ impl Reader<'_> {
         })
     }
 
-    /// A text of a number and its unit, in SI.
+    /// The value of a text of a number and its unit, in SI.
     fn quantity(&mut self, offset: usize, key: &str, text: &str, kind: Option<&str>) -> Option<(f64, Option<String>)> {
         let quantity = Declared::quantity(text).filter(|(_, unit)| kind.is_none_or(|kind| unit.is_like(kind)));
         if quantity.is_none() {
@@ -307,7 +308,7 @@ impl Reader<'_> {
         quantity.map(|(value, unit)| (value, Some(unit.coherent)))
     }
 
-    /// A number in the unit that is declared for it, in SI.
+    /// The value of a number in its declared unit, in SI.
     fn in_unit(&mut self, offset: usize, key: &str, value: f64, unit: Option<&str>) -> Option<(f64, Option<String>)> {
         let Some(unit) = unit else {
             return Some((value, None));

@@ -1,4 +1,4 @@
-//! The results of `qcar fit`: `fit.json`, with values and standard errors. `study.json` holds one, too.
+//! The results of `qcar fit`: `fit.json`, with values and standard errors. `study.json` contains them too.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -11,7 +11,7 @@ use serde_json::Value;
 use super::file::{ParameterFile, Stated};
 use crate::files::read_text;
 
-/// What of it is of interest here.
+/// The relevant contents of the file.
 #[derive(Deserialize)]
 pub(super) struct Answer {
     /// The name of the model.
@@ -39,7 +39,7 @@ impl Answer {
     /// Reads a file.
     ///
     /// # Errors
-    /// A file that cannot be read, is not JSON, or is not the answer of a fit.
+    /// Fails if the file cannot be read, is not JSON, or is not the result of a fit.
     pub fn read(path: &Path) -> Result<Self, InputError> {
         let text = read_text(path)?;
         let json: Value = serde_json::from_str(&text).map_err(|error| {
@@ -55,16 +55,16 @@ impl Answer {
         })
     }
 
-    /// Of pairs of estimates.
+    /// Correlations of pairs of estimates.
     pub fn correlations(&self) -> Vec<((String, String), f64)> {
         let pairs = self.all_correlations.iter().flatten();
         pairs.map(|own| (own.between.clone(), own.value)).collect()
     }
 
-    /// How probable other values are: the distribution of all estimates that have an error.
+    /// The joint distribution of all estimates that have a standard error.
     ///
     /// # Errors
-    /// A fit that no distribution follows from.
+    /// Fails if the fit gives no distribution.
     pub fn posterior(&self, path: &Path) -> Result<Posterior, InputError> {
         let wrong = |found: String| {
             let expected = "estimates with standard errors and all correlations";
@@ -83,7 +83,7 @@ impl Answer {
         Posterior::new(estimates, &correlations).map_err(|error| wrong(error.to_string()).into())
     }
 
-    /// The values; what takes the value of another parameter is left to do so.
+    /// The values, without those of tied parameters.
     pub fn parameters(&self, path: &Path) -> ParameterFile {
         let own = self.parameters.iter().filter(|(_, own)| own.tied_to.is_none());
         let stated = own.map(|(name, own)| {
@@ -104,7 +104,7 @@ impl Answer {
     }
 }
 
-/// A parameter with an error, within the bounds of its fit.
+/// A parameter with a standard error, and the bounds of its fit.
 fn estimate((name, own): (&String, &Parameter)) -> Option<Estimate> {
     Some(Estimate {
         name: name.clone(),

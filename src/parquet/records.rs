@@ -14,7 +14,7 @@ const REQUIRED: i32 = 0;
 /// A codec.
 const UNCOMPRESSED: i32 = 0;
 
-/// The bytes before a page of so many numbers.
+/// The header of a page of `count` numbers.
 pub(super) fn page_header(rows: u64) -> Vec<u8> {
     let size = (rows * 8) as i32;
     let data = Struct(vec![
@@ -26,7 +26,7 @@ pub(super) fn page_header(rows: u64) -> Vec<u8> {
     bytes(&Struct(vec![(1, Int(0)), (2, Int(size)), (3, Int(size)), (5, data)]))
 }
 
-/// The record at the end of a file with so many rows.
+/// The metadata at the end of a file with `rows` rows.
 pub(super) fn of_file(shape: &Shape, rows: u64) -> Vec<u8> {
     let root = Struct(vec![(4, text("schema")), (5, Int(shape.columns.len() as i32))]);
     let column = |name: &String| Struct(vec![(1, Int(DOUBLE)), (3, Int(REQUIRED)), (4, text(name))]);

@@ -1,22 +1,22 @@
-//! Thrift's compact protocol, as far as Parquet needs it: a structure is a list of fields with rising numbers.
+//! The part of Thrift's compact protocol that Parquet needs: a structure is a list of fields with ascending numbers.
 //! <https://github.com/apache/thrift/blob/master/doc/specs/thrift-compact-protocol.md>.
 
 /// A value of a field.
 pub(super) enum Value {
-    /// Of 32 bits.
+    /// A number of 32 bits.
     Int(i32),
-    /// Of 64 bits.
+    /// A number of 64 bits.
     Long(u64),
-    /// UTF-8.
+    /// A text in UTF-8.
     Text(String),
-    /// Numbered fields, in rising order.
+    /// Numbered fields, in ascending order.
     Struct(Vec<(i16, Value)>),
-    /// Of one kind.
+    /// Values of one kind.
     List(Vec<Value>),
 }
 
 impl Value {
-    /// The number by which the protocol knows a kind.
+    /// The number of a kind in the protocol.
     fn kind(&self) -> u8 {
         match self {
             Value::Int(_) => 5,
@@ -27,7 +27,7 @@ impl Value {
         }
     }
 
-    /// Its bytes, after others.
+    /// Appends its bytes.
     pub fn write(&self, out: &mut Vec<u8>) {
         match self {
             Value::Int(number) => varint(zigzag(i64::from(*number)), out),
@@ -45,7 +45,7 @@ impl Value {
 fn structure(fields: &[(i16, Value)], out: &mut Vec<u8>) {
     let mut last = 0;
     for (number, value) in fields {
-        // Fields of what Parquet writes are never 16 apart.
+        // Numbers of consecutive fields in Parquet differ by less than 16.
         out.push(((number - last) as u8) << 4 | value.kind());
         value.write(out);
         last = *number;
@@ -65,12 +65,12 @@ fn list(items: &[Value], out: &mut Vec<u8>) {
     items.iter().for_each(|item| item.write(out));
 }
 
-/// Small numbers of either sign become small ones without.
+/// Maps small positive and negative numbers to small unsigned ones.
 fn zigzag(number: i64) -> u64 {
     (number << 1 ^ number >> 63) as u64
 }
 
-/// Seven bits a byte, the lowest first.
+/// Seven bits in each byte, the lowest first.
 fn varint(mut number: u64, out: &mut Vec<u8>) {
     while number >= 0x80 {
         out.push(number as u8 | 0x80);

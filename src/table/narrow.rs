@@ -1,10 +1,11 @@
-//! A table made narrower: texts and headings continue on further lines, and columns without room below the table.
+//! Fits a table into a width: texts and headings continue on further lines, and columns without room follow below the
+//! table.
 
 use super::{SPACE, Shape, lines};
 
-/// What texts are not made narrower than.
+/// Smallest width of a column of texts.
 const TEXT: usize = 14;
-/// Behind these a word may be broken.
+/// Characters after which a word may be broken.
 const JOINTS: [char; 5] = ['_', '/', ',', '-', ']'];
 
 /// The width of a table.
@@ -26,8 +27,8 @@ pub(super) fn text(rows: &[Vec<String>], shapes: &[Shape], width: usize) -> Stri
     parts.collect::<Vec<_>>().join("\n")
 }
 
-/// Columns made narrower until the table fits or no column gives way: first headings of numbers, which cost no line in each row,
-/// then texts, each time the widest.
+/// Makes columns narrower until the table fits or no column can become narrower: first headings of numbers, which need
+/// no further line in the rows, then texts, the widest first.
 fn shrunk(rows: &[Vec<String>], shapes: &[Shape], width: usize) -> Vec<Shape> {
     let all = shapes.iter().enumerate();
     let least: Vec<usize> = all.map(|(at, shape)| narrowest(rows, at, *shape)).collect();
@@ -42,7 +43,7 @@ fn shrunk(rows: &[Vec<String>], shapes: &[Shape], width: usize) -> Vec<Shape> {
     shapes
 }
 
-/// Numbers stay whole, and so does a word of their heading.
+/// Numbers and words of their headings are not broken.
 fn narrowest(rows: &[Vec<String>], column: usize, (width, numeric): Shape) -> usize {
     let numbers = || {
         rows[1..]
@@ -63,7 +64,8 @@ fn narrowest(rows: &[Vec<String>], column: usize, (width, numeric): Shape) -> us
     }
 }
 
-/// Which columns stand beside each other: what names the rows comes again before those that had no room.
+/// Divides the columns into parts that fit side by side. The column with the names of the rows is repeated in each
+/// part.
 fn parts(shapes: &[Shape], width: usize) -> Vec<Vec<usize>> {
     let names = shapes
         .iter()
@@ -85,7 +87,7 @@ fn parts(shapes: &[Shape], width: usize) -> Vec<Vec<usize>> {
     parts
 }
 
-/// A row as several, in which the rest of a cell stands below its beginning.
+/// A row as several lines, in which a long cell continues below its beginning.
 fn below<'a>(cells: impl Iterator<Item = &'a str>, shapes: &[Shape]) -> Vec<Vec<String>> {
     let pieces: Vec<Vec<String>> = cells
         .zip(shapes)
@@ -101,7 +103,7 @@ fn below<'a>(cells: impl Iterator<Item = &'a str>, shapes: &[Shape]) -> Vec<Vec<
     (0..high).map(row).collect()
 }
 
-/// A text in pieces of so many characters: between words, else after a joint, else anywhere.
+/// A text in pieces of at most `width` characters, broken between words, else after one of the joints, else anywhere.
 fn broken(text: &str, width: usize) -> Vec<String> {
     let mut pieces = Vec::new();
     let mut rest: Vec<char> = text.chars().collect();

@@ -32,7 +32,7 @@ pub struct Arguments {
     format: Format,
 }
 
-/// Does it.
+/// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let Some(name) = &arguments.name else {
         return catalogue(arguments.format);

@@ -33,7 +33,7 @@ const DIGITS: usize = 6;
 pub struct Arguments {
     /// The file
     file: PathBuf,
-    /// Output format it
+    /// Output format
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
 }

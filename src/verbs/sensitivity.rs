@@ -31,7 +31,7 @@ pub(crate) mod doubts;
 pub(crate) mod gather;
 // The result as text and CSV.
 pub(crate) mod render;
-// as figures,
+// The result as figures.
 mod figure;
 
 use doubts::{Doubts, Temperatures};
@@ -102,7 +102,7 @@ pub struct Arguments {
     format: TableFormat,
 }
 
-/// A part of one, written as percent.
+/// A fraction, written as percent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Percent(pub f64);
 
@@ -117,7 +117,7 @@ impl FromStr for Percent {
     }
 }
 
-/// A parameter and how far it may be off.
+/// A parameter and its relative tolerance.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Tolerance {
     name: String,
@@ -136,7 +136,7 @@ impl FromStr for Tolerance {
     }
 }
 
-/// A parameter and what a kelvin makes of it.
+/// A parameter and its relative change per kelvin.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PerKelvin {
     name: String,
@@ -157,10 +157,10 @@ impl FromStr for PerKelvin {
     }
 }
 
-/// A part of a parameter per kelvin, written as percent.
+/// A relative change per kelvin, written as percent.
 ///
 /// # Errors
-/// What else it could be, in words.
+/// Fails with the expected form, in words.
 pub(crate) fn per_kelvin(text: &str) -> Result<f64, String> {
     const MOST: f64 = 10.0;
     let number = text.trim().trim_end_matches('%').trim_end().parse::<f64>().ok();
@@ -170,7 +170,7 @@ pub(crate) fn per_kelvin(text: &str) -> Result<f64, String> {
     })
 }
 
-/// Does it.
+/// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let beneath = Beneath {
         campaign: arguments.campaign.as_deref(),
@@ -234,7 +234,7 @@ fn list(ground: &Ground<'_>) -> String {
     table.text()
 }
 
-/// What the user says of it.
+/// The choices of the user.
 fn doubts(subject: &Subject, parameters: &[usize], arguments: &Arguments) -> Result<Doubts, InputError> {
     let mut problems = Vec::new();
     let mut place = |name: &str, option: &'static str| {
@@ -265,7 +265,7 @@ fn doubts(subject: &Subject, parameters: &[usize], arguments: &Arguments) -> Res
     InputError::unless_empty(problems, Some(doubts))
 }
 
-/// A metric that cannot be measured.
+/// The problem of a metric that cannot be computed.
 pub(crate) fn refused(subject: &str, error: &MetricError) -> Failure {
     let place = Place::Name(subject.into());
     Problem::refused("command line", place, "its metrics cannot be computed", error).into()

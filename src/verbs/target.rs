@@ -62,7 +62,7 @@ pub struct Arguments {
     format: Format,
 }
 
-/// Does it.
+/// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let read = Read::of(&arguments.targets)?;
     let campaign = read.file.campaign.as_ref().map(|path| read.beside(path));
@@ -125,7 +125,7 @@ fn write(answer: &Answer, plan: &Plan, subject: &Subject, ground: &Ground<'_>, f
     )?)
 }
 
-/// A linear model as a program of the page, which computes its ratios with other values.
+/// A linear model as JavaScript for the report, which computes its ratios with other values.
 fn program(subject: &Subject, design: &Values) -> Result<Option<String>, Failure> {
     let about = subject.model.about();
     let ratios = declared(about);

@@ -205,7 +205,12 @@ fn what_is_wrong_with_a_table_is_told_with_its_place() {
     says(
         sure,
         "velocity,force\n-0.1,200\n",
-        &["damper.csv, line 2", "`force`", "supports the motion", "sign = -1"],
+        &[
+            "damper.csv, line 2",
+            "`force`",
+            "acts in the direction of the motion",
+            "sign = -1",
+        ],
     );
     says(sure, "speed,force\n0.1,200\n", &["damper.csv, line 1", "`velocity`"]);
     says(

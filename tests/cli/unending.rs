@@ -42,7 +42,7 @@ fn open_brackets_are_told_once() {
     let ran = checked(&"(".repeat(10_000));
     assert_eq!(ran.stdout.matches("nested_too_deep").count(), 1, "{}", ran.stdout);
     let ran = checked(&")\n".repeat(10_000));
-    assert!(ran.stdout.contains("and 9975 more of this kind"), "{}", ran.stdout);
+    assert!(ran.stdout.contains("and 9975 more mistakes"), "{}", ran.stdout);
 }
 
 #[test]

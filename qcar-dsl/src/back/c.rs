@@ -1,8 +1,8 @@
 //! A compiled model printed as C99: a header and a source that need `math.h` and nothing else.
 //!
 //! Every statement is one operation of a program, in its order, so a compiler that contracts nothing
-//! (`-ffp-contract=off`) gives the bits of the evaluator where both call the same `libm`. Nothing is allocated, and
-//! nothing is kept between calls.
+//! (`-ffp-contract=off`) gives the bits of the evaluator if both call the same `libm`. The functions allocate nothing
+//! and keep no state between calls.
 
 // Texts as comments and literals.
 mod text;
@@ -22,13 +22,13 @@ use crate::program::schedule::Compiled;
 /// The two files of a model.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sources {
-    /// Sizes, places and declarations.
+    /// Sizes, positions and declarations.
     pub header: String,
     /// The functions and the data.
     pub source: String,
 }
 
-/// A model as C with `values` as the defaults of its parameters; `stem` is what the files are called.
+/// A model as C, with `values` as the defaults of its parameters; `stem` is the name of the files without extension.
 pub fn sources(compiled: &Compiled, values: &[f64], stem: &str) -> Sources {
     let about = &compiled.about;
     let kinks = motion_kinks(compiled);
@@ -50,7 +50,7 @@ pub fn sources(compiled: &Compiled, values: &[f64], stem: &str) -> Sources {
     }
 }
 
-/// The kinks of the equations of motion, whose values tell an integrator where to take care.
+/// The kinks of the equations of motion. An integrator locates the times at which their values change sign.
 pub fn motion_kinks(compiled: &Compiled) -> Program {
     kinks(&compiled.programs.derivative)
 }

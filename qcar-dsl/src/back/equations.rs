@@ -1,4 +1,4 @@
-//! The equations of motion as an engineer writes them, one a mass or node, with what they use below.
+//! The equations of motion as an engineer writes them: one for each mass and node, then the definitions that they use.
 
 use std::collections::BTreeSet;
 
@@ -9,7 +9,7 @@ use crate::model::{
 
 use crate::back::notation::{Notation, Summand, Writer};
 
-/// A left-hand side and the terms of the right-hand side, each with its sign.
+/// An equation: its left-hand side and the terms of the right-hand side, each with its sign.
 pub struct Equation {
     /// `m_wheel z̈_wheel`
     pub left: String,
@@ -19,19 +19,19 @@ pub struct Equation {
 
 /// The equations of a model, written in one notation.
 pub struct Sheet {
-    /// Newton for each mass and the balance of each node, direction after direction.
+    /// Newton's law of each mass and the force balance of each node, direction by direction.
     pub motion: Vec<(String, Vec<Equation>)>,
     /// Rates of the inner states of the laws.
     pub inner: Vec<Equation>,
-    /// What the others use by name: forces and stretches of links, derived quantities.
+    /// Definitions that other equations use: forces and stretches of links, derived quantities.
     pub names: Vec<Equation>,
-    /// Forces that a tyre has while it rolls.
+    /// Forces of a rolling tyre.
     pub rolling: Vec<Equation>,
-    /// Where points are that several coordinates move.
+    /// Positions of points that several coordinates move.
     pub points: Vec<Equation>,
-    /// What is seen.
+    /// The outputs.
     pub outputs: Vec<Equation>,
-    /// Ratios of what is seen.
+    /// The channels, which are ratios of signals.
     pub channels: Vec<Equation>,
 }
 
@@ -40,8 +40,8 @@ impl Sheet {
     pub fn new(model: &Model, notation: Notation) -> Sheet {
         let mut graph = model.graph.clone();
         let elsewhere = used_elsewhere(model);
-        let laws: Vec<LawWritten> = links(model)
-            .map(|link| LawWritten::new(model, &mut graph, &elsewhere, link))
+        let laws: Vec<LawTerms> = links(model)
+            .map(|link| LawTerms::new(model, &mut graph, &elsewhere, link))
             .collect();
         let balances: Vec<Balance> = moving(model)
             .map(|coordinate| Balance::new(model, &mut graph, &laws, coordinate))
@@ -70,7 +70,7 @@ impl Sheet {
         }
     }
 
-    /// All of it under headings; what is empty is left out.
+    /// All equations under headings, without empty sections.
     pub fn sections(self) -> Vec<(String, Vec<Equation>)> {
         let motion = self
             .motion
@@ -89,7 +89,7 @@ impl Sheet {
     }
 }
 
-/// What the text defines by `let`, and the inertias that it writes as expressions: `m_body_z`.
+/// Quantities that the text defines by `let`, and inertias that it gives as expressions: `m_body_z`.
 pub fn named_quantities(model: &Model) -> Vec<(String, Expr)> {
     let compound =
         |&(_, value): &(String, Expr)| !matches!(model.graph.node(value), Node::Constant(_) | Node::Symbol(_));
@@ -145,22 +145,23 @@ fn moving(model: &Model) -> impl Iterator<Item = CoordinateId> {
         .map(|(place, _)| CoordinateId(place as u16))
 }
 
-/// The resisting force of a link, ready to be written.
-struct LawWritten {
+/// The resisting force of a link as terms.
+struct LawTerms {
     link: LinkId,
-    /// A linear law between two points is written out where it acts; any other is named, `F_spring`.
+    /// True if the law is written out in the balances: a linear law between two points. Any other law gets a name,
+    /// `F_spring`.
     short: bool,
     terms: Vec<Summand>,
-    /// What the terms call `s`, where they do.
+    /// The stretch `s`, if the terms use it.
     stretch: Option<Vec<Summand>>,
-    /// What they call `v`.
+    /// The rate `v`, if the terms use it.
     rate: Option<Vec<Summand>>,
     /// The terms that replace the others while a tyre rolls.
     rolling: Option<Vec<Summand>>,
 }
 
-impl LawWritten {
-    fn new(model: &Model, graph: &mut Graph, elsewhere: &BTreeSet<Symbol>, id: LinkId) -> LawWritten {
+impl LawTerms {
+    fn new(model: &Model, graph: &mut Graph, elsewhere: &BTreeSet<Symbol>, id: LinkId) -> LawTerms {
         let link = link(model, id);
         let short = is_short(graph, link) && !is_seen(model, id);
         let [s, v, a] = match short {
@@ -184,7 +185,7 @@ impl LawWritten {
         let by_rate = own_rate || elsewhere.contains(&Symbol::Rate(id));
         let stretch = by_stretch.then(|| combination(graph, link, Symbol::Position));
         let rate = by_rate.then(|| combination(graph, link, Symbol::Velocity));
-        LawWritten {
+        LawTerms {
             link: id,
             short,
             terms,
@@ -211,7 +212,7 @@ impl LawWritten {
     }
 }
 
-/// Whether the law of a link depends on its stretch, and whether on its rate.
+/// True if the law of a link depends on its stretch, and true if it depends on its rate.
 fn uses(graph: &Graph, id: LinkId, law: &Law) -> [bool; 2] {
     let forces = law.terms.iter().filter_map(|term| {
         if let Term::Force(force) = term {
@@ -243,7 +244,7 @@ fn combination(graph: &mut Graph, link: &Link, kind: fn(CoordinateId) -> Symbol)
     along(graph, &link.stretch, kind)
 }
 
-/// Where a point is, term by term.
+/// The position of a point, term by term.
 fn place(graph: &mut Graph, point: &Point) -> Vec<Summand> {
     along(graph, &point.combination, Symbol::Position)
 }
@@ -286,7 +287,7 @@ fn spread(graph: &mut Graph, negative: bool, e: Expr, into: &mut Vec<Summand>) {
     }
 }
 
-/// A spring, damper or inerter between no more than two points without levers.
+/// True for springs, dampers and inerters between at most two points without levers.
 fn is_short(graph: &Graph, link: &Link) -> bool {
     let direct = |c: Expr| graph.as_constant(c).is_some_and(|c| c.abs() == 1.0);
     link.stretch.len() <= 2
@@ -321,7 +322,7 @@ struct Balance {
 }
 
 impl Balance {
-    fn new(model: &Model, graph: &mut Graph, laws: &[LawWritten], id: CoordinateId) -> Balance {
+    fn new(model: &Model, graph: &mut Graph, laws: &[LawTerms], id: CoordinateId) -> Balance {
         let mut right = Vec::new();
         for law in laws {
             let mut stretch = link(model, law.link).stretch.iter();
@@ -381,8 +382,8 @@ fn inner_states(model: &Model, writer: &Writer) -> Vec<Equation> {
     links(model).flat_map(of_link).collect()
 }
 
-fn names(writer: &Writer, laws: &[LawWritten], named: &[(String, Expr)]) -> Vec<Equation> {
-    let of_law = |law: &LawWritten| {
+fn names(writer: &Writer, laws: &[LawTerms], named: &[(String, Expr)]) -> Vec<Equation> {
+    let of_law = |law: &LawTerms| {
         let written = |letter: &str, terms: &Vec<Summand>| Equation {
             left: writer.of_link(letter, law.link),
             right: writer.sum(terms),
@@ -400,9 +401,9 @@ fn names(writer: &Writer, laws: &[LawWritten], named: &[(String, Expr)]) -> Vec<
     of_laws.chain(derived).collect()
 }
 
-/// The laws of tyres while they roll, over a stretch that is not that of the road.
-fn rolling(writer: &Writer, laws: &[LawWritten]) -> Vec<Equation> {
-    let force = |law: &LawWritten| {
+/// The laws of rolling tyres; their stretch comes from the contact instead of the coordinates.
+fn rolling(writer: &Writer, laws: &[LawTerms]) -> Vec<Equation> {
+    let force = |law: &LawTerms| {
         let right = writer.sum(law.rolling.as_ref()?);
         Some(Equation {
             left: writer.of_link("F", law.link),

@@ -17,7 +17,7 @@ pub struct Printed {
     pub text: String,
 }
 
-/// What the functions stand on.
+/// Helper functions that the others call.
 pub const SUPPORT: &str = include_str!("javascript/curve.js");
 
 /// All functions of a model; a response takes an angular frequency in rad/s.
@@ -32,7 +32,7 @@ pub fn functions(compiled: &Compiled) -> Vec<Printed> {
         .collect()
 }
 
-/// What a variable of a function must not be called: keywords, and what a function refers to beside its own variables.
+/// Reserved names: keywords, and names that a function uses in addition to its own variables.
 pub const RESERVED: &[&str] = &[
     "Infinity",
     "Math",

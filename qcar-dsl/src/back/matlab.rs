@@ -12,7 +12,7 @@ use crate::program::schedule::Compiled;
 
 use statements::{Statements, support, text};
 
-/// The text of `stem.m`: `[A, B, C, D, names] = stem(p, x, u)`, with `values` where `p` has none.
+/// The text of `stem.m`: `[A, B, C, D, names] = stem(p, x, u)`; `values` are the defaults of `p`.
 pub fn function(compiled: &Compiled, values: &[f64], stem: &str) -> String {
     let about = &compiled.about;
     let arguments = if about.linear { "p" } else { "p, x, u" };
@@ -51,7 +51,7 @@ pub fn function(compiled: &Compiled, values: &[f64], stem: &str) -> String {
     .concat()
 }
 
-/// True for what MATLAB takes as the name of a function.
+/// True for a valid name of a MATLAB function.
 pub fn is_name(stem: &str) -> bool {
     let is_letter = |c: char| c.is_ascii_alphabetic();
     let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '_';
@@ -91,7 +91,7 @@ fn line(text: &str) -> String {
     text.lines().collect::<Vec<_>>().join(" ")
 }
 
-/// Takes what the caller gives; a name that is not the model's is a mistake.
+/// Reads the caller's parameters; a name that is not a parameter of the model is an error.
 fn given(about: &About, stem: &str) -> String {
     format!(
         "    if nargin < 1 || isempty(p), p = struct(); end
@@ -124,7 +124,7 @@ fn zeros(about: &About) -> String {
     [("A", x, x), ("B", x, u), ("C", y, x), ("D", y, u)].map(zeros).concat()
 }
 
-/// Where a nonzero goes, and what it relates.
+/// The place of a nonzero in its matrix, and the names of its row and column.
 fn target(about: &About, place: usize) -> (String, String) {
     let entry = &about.matrices[place];
     let matrix = match entry.matrix {
@@ -159,7 +159,7 @@ fn names(about: &About) -> String {
     .concat()
 }
 
-/// Keywords, and what the function refers to beside its own variables.
+/// Keywords, and names that the function uses in addition to its own variables.
 const RESERVED: &[&str] = &[
     "A",
     "B",

@@ -1,4 +1,4 @@
-//! Equations and programs as other people and programs read them.
+//! Equations and programs in forms that people and other programs read.
 
 // Notation of expressions.
 pub mod notation;

@@ -5,7 +5,7 @@ mod spelling;
 
 use qcar_model::About;
 
-use crate::back::straight::{Locals, Names, Straight, Written};
+use crate::back::straight::{Locals, Names, ProgramText, Straight};
 use crate::derive::vectors::Vectors;
 use crate::expr::Symbol;
 use crate::program::schedule::Compiled;
@@ -18,7 +18,7 @@ use spelling::{Modelica, RESERVED, string, unit};
 pub fn model(compiled: &Compiled, values: &[f64]) -> String {
     let about = &compiled.about;
     let mut names = Names::beside(RESERVED.iter().copied());
-    let known = Known::new(about, &mut names);
+    let known = VariableNames::new(about, &mut names);
     let programs = &compiled.programs;
     let mut part = |program, constants: &[String]| Part::new(compiled, program, &known, constants, &mut names);
     let prepare = part(&programs.prepare, &[]);
@@ -46,8 +46,8 @@ pub fn model(compiled: &Compiled, values: &[f64]) -> String {
     .concat()
 }
 
-/// What parameters, states, inputs and outputs are called: a name stands once.
-struct Known {
+/// Names of parameters, states, inputs and outputs; all are different.
+struct VariableNames {
     model: String,
     parameters: Vec<String>,
     inputs: Vec<String>,
@@ -55,9 +55,9 @@ struct Known {
     outputs: Vec<String>,
 }
 
-impl Known {
+impl VariableNames {
     fn new(about: &About, names: &mut Names) -> Self {
-        Known {
+        VariableNames {
             model: names.take(&about.name),
             parameters: about.parameters.iter().map(|own| names.take(&own.name)).collect(),
             inputs: about.inputs.iter().map(|own| names.take(&own.name)).collect(),
@@ -67,7 +67,7 @@ impl Known {
     }
 }
 
-fn declarations(compiled: &Compiled, known: &Known, values: &[f64]) -> String {
+fn declarations(compiled: &Compiled, known: &VariableNames, values: &[f64]) -> String {
     let vectors = &compiled.vectors;
     let parameters = compiled.model.parameters.iter().zip(&known.parameters).zip(values);
     let parameters = parameters.map(|((own, name), value)| {
@@ -91,7 +91,7 @@ fn declarations(compiled: &Compiled, known: &Known, values: &[f64]) -> String {
     parameters.chain(inputs).chain(outputs).chain(states).collect()
 }
 
-/// A program whose values are variables of the model, but for those that stand where they are used.
+/// A program whose values are variables of the model, except those that are written where they are used.
 struct Part<'a> {
     program: &'a Program,
     locals: Locals,
@@ -99,7 +99,13 @@ struct Part<'a> {
 }
 
 impl<'a> Part<'a> {
-    fn new(compiled: &Compiled, program: &'a Program, known: &Known, constants: &[String], names: &mut Names) -> Self {
+    fn new(
+        compiled: &Compiled,
+        program: &'a Program,
+        known: &VariableNames,
+        constants: &[String],
+        names: &mut Names,
+    ) -> Self {
         let labels = Straight::new(compiled).labels(program);
         let uses = Uses::of(program);
         let mut part = Part {
@@ -127,8 +133,8 @@ impl<'a> Part<'a> {
         part
     }
 
-    fn written(&self) -> Written<'_> {
-        Written {
+    fn written(&self) -> ProgramText<'_> {
+        ProgramText {
             language: &Modelica,
             program: self.program,
             locals: &self.locals,
@@ -141,7 +147,7 @@ impl<'a> Part<'a> {
         outputs.map(|&value| written.operand(value).into_owned()).collect()
     }
 
-    /// Its variables, with or without what computes them.
+    /// Its variables, declared with their defining expression if `bound`.
     fn declared(&self, kind: &str, bound: bool) -> String {
         let declare = |&value: &Value| {
             let binding = match bound {
@@ -160,7 +166,7 @@ impl<'a> Part<'a> {
     }
 }
 
-/// How often a program uses its values, and which of them in a branch of a choice alone.
+/// How often a program uses each of its values, and which values it uses only in a branch of a choice.
 struct Uses {
     counts: Vec<usize>,
     chosen: Vec<bool>,
@@ -174,7 +180,7 @@ impl Uses {
         };
         for &op in &program.ops {
             for value in program.arguments(op) {
-                // A curve through points names its values in each of its pieces.
+                // A curve through points uses its values in each of its pieces.
                 uses.counts[value.0 as usize] += if matches!(op, Op::Table(..)) { 2 } else { 1 };
             }
             if let Op::Select(_, a, b) = op {
@@ -188,16 +194,16 @@ impl Uses {
         uses
     }
 
-    /// What has no name and is used once; and whatever is used once as a branch, since a tool computes a variable even where
-    /// the branch is not taken, and it may divide by zero there.
+    /// True for a value without a name that is used once, and for any value that is used once as a branch of a choice.
+    /// As a variable, a tool would compute it even if the branch is not taken, and it might divide by zero.
     fn stands_where_it_is_used(&self, value: Value, has_name: bool) -> bool {
         let place = value.0 as usize;
         self.counts[place] == 1 && (!has_name || self.chosen[place])
     }
 }
 
-/// The variable that a leaf is.
-fn given(vectors: &Vectors, known: &Known, symbol: Symbol) -> String {
+/// The variable of a leaf.
+fn given(vectors: &Vectors, known: &VariableNames, symbol: Symbol) -> String {
     if let Symbol::Parameter(place) = symbol {
         return known.parameters[usize::from(place)].clone();
     }

@@ -1,4 +1,4 @@
-//! How an expression is written: for a terminal, for LaTeX.
+//! Notations of expressions: for a terminal and for LaTeX.
 
 use std::collections::BTreeMap;
 
@@ -25,16 +25,16 @@ pub struct Writer<'a> {
 /// A term of a sum: a product and its sign.
 #[derive(Clone)]
 pub struct Summand {
-    /// True where it is taken away.
+    /// True if the product is subtracted.
     pub negative: bool,
-    /// What is multiplied.
+    /// The factors of the product.
     pub factors: Vec<Expr>,
-    /// The link whose force, by name, is one more factor.
+    /// A link whose named force is a further factor.
     pub link: Option<LinkId>,
 }
 
 impl Summand {
-    /// `± first · rest`; a sign within `first` comes out, and `mr - 1` turns to `-(1 - mr)`.
+    /// `± first · rest`. The sign of `first` becomes that of the term, and `mr - 1` becomes `-(1 - mr)`.
     pub fn signed(graph: &mut Graph, negative: bool, first: Expr, rest: &[Expr]) -> Summand {
         let (opposite, magnitude) = match graph.node(first) {
             Node::Neg(a) => (true, a),
@@ -54,7 +54,7 @@ impl Summand {
     }
 }
 
-/// How tightly an expression binds; a looser one gets parentheses inside a tighter one.
+/// Precedence of an expression. A weaker one gets parentheses inside a stronger one.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Binding {
     Sum,
@@ -75,7 +75,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// From now on writes `e` by a name; leaves and numbers keep theirs.
+    /// Gives `e` a name, which is written from now on. Leaves and numbers keep theirs.
     pub fn name(&mut self, e: Expr, name: &str) {
         if !matches!(self.graph.node(e), Node::Constant(_) | Node::Symbol(_)) {
             let written = self.identifier(name);
@@ -91,7 +91,8 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// An expression, written out once even where it has a name: the right-hand side of its definition.
+    /// An expression whose outermost operation is written out even if it has a name: the right-hand side of its
+    /// definition.
     pub fn expand(&self, e: Expr) -> String {
         match self.graph.node(e) {
             Node::Constant(bits) => number(f64::from_bits(bits), self.notation),
@@ -128,7 +129,8 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// A derivative of a curve, with a prime for each order; with its slopes where the ordinates do not give them.
+    /// A derivative of a curve, with a prime for each order, and with its slopes if they do not follow from the
+    /// ordinates.
     fn table(&self, order: u8, x: Expr, curve: &Curve<Expr>) -> String {
         let list = |entries: Vec<String>| format!("[{}]", entries.join(", "));
         let knots = list(curve.knots().map(|knot| number(knot, self.notation)).collect());
@@ -144,7 +146,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// The terms of a sum, each with its sign in front: `-a`, `+ b`, `- c`; `0` where there is none.
+    /// The terms of a sum, each with its sign in front: `-a`, `+ b`, `- c`; `0` for an empty sum.
     pub fn sum(&self, summands: &[Summand]) -> Vec<String> {
         if summands.is_empty() {
             return vec!["0".into()];
@@ -161,7 +163,7 @@ impl<'a> Writer<'a> {
         summands.iter().enumerate().map(signed).collect()
     }
 
-    /// A product of factors, and of the force of a link by its name: numbers first, equal factors as powers.
+    /// A product of factors and of the named force of a link: numbers first, equal factors as powers.
     pub fn product(&self, factors: &[Expr], link: Option<LinkId>) -> String {
         let mut powers: Vec<(Expr, i32)> = Vec::new();
         for &factor in factors.iter().filter(|&&f| self.graph.as_constant(f) != Some(1.0)) {
@@ -194,7 +196,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// What follows a `+`: a sum needs parentheses only where it starts with a sign.
+    /// An expression after a `+`: a sum needs parentheses only if it starts with a sign.
     fn addend(&self, e: Expr) -> String {
         let written = self.write(e);
         let is_open = written.starts_with('-') || matches!(self.graph.node(e), Node::Select(..));
@@ -227,7 +229,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// A quantity of a link: `F_tire`, with its direction where two links share the name.
+    /// A quantity of a link: `F_tire`, with its direction if two links have the same name.
     pub fn of_link(&self, letter: &str, link: LinkId) -> String {
         let link = &self.model.links[link.0 as usize];
         let shared = self.model.links.iter().filter(|other| other.name == link.name).count() > 1;
@@ -249,7 +251,7 @@ impl<'a> Writer<'a> {
         self.moving(coordinate.angle, &coordinate.direction, &coordinate.name, order)
     }
 
-    /// A motion of a point, by its place in the model.
+    /// A motion of a point, given by its position in `Model::points`.
     pub fn of_point(&self, place: u16, quantity: Quantity) -> String {
         let point = &self.model.points[usize::from(place)];
         self.moving(point.angle, &point.direction, &point.name, quantity as usize)
@@ -286,7 +288,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// A whole row or column.
+    /// The sign for a whole row or column.
     pub fn any(&self) -> &'static str {
         if self.notation == Notation::Latex {
             r"\cdot"
@@ -295,7 +297,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// The time derivative of something written.
+    /// The time derivative of a written expression.
     pub fn derivative(&self, written: &str) -> String {
         match self.notation {
             Notation::Latex => format!(r"\frac{{\mathrm{{d}}}}{{\mathrm{{d}}t}} {written}"),
@@ -303,7 +305,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// The ratio of two things written.
+    /// The ratio of two written expressions.
     pub fn ratio(&self, above: &str, below: &str) -> String {
         match self.notation {
             Notation::Latex => format!(r"\frac{{{above}}}{{{below}}}"),

@@ -1,8 +1,8 @@
 //! A compiled model printed as one Rust module.
 //!
-//! The module is prose for a reviewer: every function carries its equation, the lines of the model that it comes from
-//! and its operation count; every statement is one operation, every result says what it is. It is written as text and
-//! not as tokens, since tokens carry no comments. It needs `qcar_runtime` and nothing else.
+//! The module is written for a reviewer: the comment of every function has its equation, the lines of the model that it
+//! comes from and its operation count. Every statement is one operation, and a comment names every result. The module
+//! is printed as text, since tokens carry no comments. It depends on `qcar_runtime` only.
 
 // The description of a model for the runtime.
 mod about;
@@ -26,7 +26,8 @@ pub fn type_name(model: &str) -> String {
 
 /// The Rust text of a model: `pub mod name { … }`.
 ///
-/// The same model gives the same bytes, wherever its file lies; `FINGERPRINT` in the text is a hash of the rest of it.
+/// The same model gives the same bytes, in whatever folder its file is; `FINGERPRINT` in the text is a hash of the
+/// rest.
 pub fn module(compiled: &Compiled) -> String {
     let sections = [
         USES.to_string(),

@@ -1,4 +1,4 @@
-//! What the compiler has understood, for people: each stage of a model as text.
+//! Each stage of a model as text, for people.
 
 // Masses and links as a graph.
 mod dot;
@@ -15,7 +15,7 @@ use crate::program::schedule::Compiled;
 /// A stage that can be shown.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Stage {
-    /// The model as a file of its own, options taken. It reads back as the same model.
+    /// The model as a file of its own, with its options chosen. The file gives the same model again.
     Model,
     /// The equations of motion.
     Equations,
@@ -40,7 +40,7 @@ impl Stage {
         Stage::Dot,
     ];
 
-    /// What a user calls it.
+    /// Its name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Stage::Model => "model",
@@ -70,7 +70,7 @@ pub fn show(compiled: &Compiled, stage: Stage) -> String {
     }
 }
 
-/// The widest line of equations.
+/// Largest width of a line of equations, characters.
 const WIDTH: usize = 110;
 
 fn equations(compiled: &Compiled) -> String {
@@ -81,7 +81,7 @@ fn equations(compiled: &Compiled) -> String {
     sections.into_iter().map(section).collect::<Vec<_>>().join("\n")
 }
 
-/// An equation over as many lines as it needs, broken between terms.
+/// An equation, broken between terms into as many lines as it needs.
 fn equation(equation: &Equation) -> String {
     let mut lines = vec![format!("    {} =", equation.left)];
     for term in &equation.right {

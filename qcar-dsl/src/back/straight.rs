@@ -1,5 +1,5 @@
-//! The straight-line functions of a model, in no language yet: which programs, over which arguments, and what a reviewer
-//! calls what they read, compute and give.
+//! The straight-line functions of a model, independent of the language: their programs, their arguments, and names for
+//! the values that they read, compute and return.
 
 // Names of the results.
 mod results;
@@ -26,26 +26,26 @@ use crate::program::schedule::Compiled;
 use crate::program::{Program, Value};
 
 pub use kinks::kinks;
-pub use language::{Language, Written, usual_name};
+pub use language::{Language, ProgramText, usual_name};
 pub use locals::{Locals, Names};
 pub use pieces::{Leaf, Pieces, computed};
 pub use results::{entry_name, parameter_jacobian_names, sensitivity_names};
 
 use labels::{labels, of_constants};
 
-/// A function that is to be written in a language.
+/// A function to be printed in some language.
 pub struct Function<'a> {
     /// Its name.
     pub name: String,
-    /// What it gives, and from where; several lines.
+    /// Its results, and the equations or lines of the model behind them; several lines.
     pub doc: String,
     /// The names of the arguments that it may read.
     pub arguments: &'static [&'static str],
-    /// What each result is, for a comment.
+    /// A name for each result, for a comment.
     pub results: Vec<String>,
-    /// What it computes.
+    /// The program that it runs.
     pub program: &'a Program,
-    /// What a reviewer calls a value of the program, where the model has a name for it.
+    /// Names of the values of the program that have a name in the model.
     pub labels: BTreeMap<Value, String>,
 }
 
@@ -60,16 +60,16 @@ impl Function<'_> {
 pub struct Local {
     /// The argument, `p`.
     pub argument: &'static str,
-    /// What of it.
+    /// The part of the argument.
     pub at: At,
-    /// What a reviewer calls it, `k_tire`.
+    /// Its name in the model, `k_tire`.
     pub name: String,
 }
 
-/// What of an argument is read.
+/// The part of an argument that is read.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum At {
-    /// All of it.
+    /// The whole argument.
     Whole,
     /// An entry, counted from 0.
     Entry(usize),
@@ -78,7 +78,7 @@ pub enum At {
 }
 
 impl fmt::Display for At {
-    /// As Rust and C write it after the argument.
+    /// In the syntax of Rust and C, after the argument.
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             At::Whole => Ok(()),
@@ -94,7 +94,7 @@ pub const FREQUENCIES: &str = "frequencies";
 /// The functions of one model.
 pub struct Straight<'a> {
     compiled: &'a Compiled,
-    /// What a reviewer calls each prepared constant.
+    /// The name of each prepared constant.
     constants: Vec<String>,
 }
 
@@ -116,13 +116,13 @@ const ROLLING_OUTPUTS: &str = "The outputs while the tyre rolls over a profile."
 const KINKS: &str = "What changes its sign where a law of the equations of motion bends or jumps.";
 
 impl<'a> Straight<'a> {
-    /// Names what the programs of a model read.
+    /// Names the values that the programs of a model read.
     pub fn new(compiled: &'a Compiled) -> Self {
         let constants = of_constants(compiled);
         Straight { compiled, constants }
     }
 
-    /// All functions; a frequency response is one `at` what the language says.
+    /// All functions. `at` describes the argument of a frequency response, which depends on the language.
     pub fn functions(&self, at: &str) -> Vec<Function<'a>> {
         let (programs, about) = (&self.compiled.programs, &self.compiled.about);
         let rates: Vec<String> = about
@@ -172,13 +172,13 @@ impl<'a> Straight<'a> {
         self.function("matrices", MATRICES, POINT, entries, &self.compiled.programs.matrices)
     }
 
-    /// What [`kinks`] of the equations of motion gives.
+    /// The function of the program that [`kinks`] gives for the equations of motion.
     pub fn kinks<'p>(&self, program: &'p Program) -> Function<'p> {
         let nameless = vec![String::new(); program.outputs.len()];
         self.function("kinks", KINKS, STATE, nameless, program)
     }
 
-    /// What a reviewer calls the values of a program.
+    /// Names of the values of a program.
     pub fn labels(&self, program: &Program) -> BTreeMap<Value, String> {
         labels(self.compiled, program)
     }
@@ -201,7 +201,7 @@ impl<'a> Straight<'a> {
         }
     }
 
-    /// Where a leaf is read.
+    /// The argument, and the part of it, from which a leaf is read.
     pub fn local(&self, leaf: Leaf, arguments: &[&str]) -> Local {
         let local = |argument, at, name: &str| Local {
             argument,
@@ -265,7 +265,7 @@ Real parts of all rows, then imaginary parts{}.",
                 "; the same of the Jacobian"
             },
         );
-        // A response is complex throughout: beside its leaves nothing in it has a name.
+        // All values of a response are parts of complex numbers, so only its leaves have names.
         let labels = BTreeMap::new();
         let name = response_name(about, place, suffix);
         Function {
@@ -278,7 +278,7 @@ Real parts of all rows, then imaginary parts{}.",
         }
     }
 
-    /// The equations and the lines of the model that say so.
+    /// The equations, and the lines of the model behind them.
     fn equations(&self) -> String {
         let mut text = String::from("The equations of motion `dx = f(x, u)`.\n\n```text\n");
         let sheet = Sheet::new(&self.compiled.model, Notation::Text);

@@ -63,7 +63,7 @@ fn at_nodes(scratch: &Scratch) -> Vec<Diagnostic> {
     coupled.filter_map(mistake).collect()
 }
 
-/// A faster motion that the links together support.
+/// A motion in whose direction the links together push.
 fn pushes_along(scratch: &Scratch, group: &[LinkId]) -> Option<Diagnostic> {
     let forces = forces(scratch, group);
     (0..TRIALS).find_map(|trial| {

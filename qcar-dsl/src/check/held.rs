@@ -11,8 +11,9 @@ use crate::model::{Coordinate, CoordinateKind, Direction, Model};
 /// Number of motions at which a law is tested for a static load, since a stop may be out of reach in one of them.
 const MOTIONS: u64 = 8;
 
-/// An angular frequency, rad/s, at which dampers yield and springs do not, and the stiffness of dampers there.
+/// An angular frequency near zero, rad/s, at which springs carry a load and dampers do not.
 const NEARLY_STATIC: f64 = 1e-9;
+/// Largest dynamic stiffness at that frequency, N/m, of a link that carries no load.
 const NEARLY_NOTHING: f64 = 1e-3;
 
 /// Masses that move freely. A complete direction without road and ground may float, as the longitudinal chain of a

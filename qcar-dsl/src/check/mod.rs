@@ -22,12 +22,12 @@ pub(crate) mod slopes;
 mod stiffness;
 // The rules.
 mod duplicates;
+mod force_rates;
 mod held;
 mod inertia;
 mod kinetic;
 mod nodes;
 mod passive;
-mod pushed;
 // Passivity of links whose laws use each other.
 mod coupled;
 // From text or tokens to a checked model.
@@ -99,13 +99,13 @@ impl Checked {
     }
 
     /// Parameters that outputs determine only in combination, or not at all; empty before that check
-    /// ([`crate::derive::visible`]).
+    /// ([`crate::derive::identifiability`]).
     pub fn unseen(&self) -> &[Unseen] {
         self.unseen.as_deref().unwrap_or_default()
     }
 
     /// True if that check is done.
-    pub(crate) fn is_looked_at(&self) -> bool {
+    pub(crate) fn has_identifiability(&self) -> bool {
         self.unseen.is_some()
     }
 
@@ -150,7 +150,7 @@ pub fn check(model: Model) -> Result<(Checked, Vec<Diagnostic>), Vec<Diagnostic>
     found.extend(passive::links_are_passive(&scratch));
     found.extend(coupled::couplings_are_sound(&scratch));
     found.extend(nodes::nodes_are_solvable(&scratch));
-    found.extend(pushed::rates_of_forces_are_not_needed(&scratch));
+    found.extend(force_rates::rates_of_forces_are_not_needed(&scratch));
     found.extend(held::masses_are_held(&scratch));
     if refuses(&found) {
         return Err(found);

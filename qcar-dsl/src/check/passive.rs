@@ -55,7 +55,7 @@ fn negative(scratch: &Scratch, link: &Link, coefficient: Expr, what: &str) -> Op
     (lowest.value < 0.0).then(|| structure::negative_damping(link.declared.span, &link.name, what, lowest.value, &at))
 }
 
-/// A law without inner states that supports a faster motion.
+/// A law without inner states whose force pushes in the direction of the motion.
 fn pushes_along(scratch: &Scratch, link: &Link, id: LinkId) -> Option<Diagnostic> {
     let has_law = link.law.terms.iter().any(|term| matches!(term, Term::Force(_)));
     if !has_law {

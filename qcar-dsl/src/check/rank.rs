@@ -1,6 +1,6 @@
 //! Ranks and null spaces of small dense matrices, by elimination with full pivoting.
 
-/// Pivots below this share of the largest entry count as zero.
+/// Pivots below this fraction of the largest entry count as zero.
 const NEGLIGIBLE: f64 = 1e-9;
 
 /// A basis of the null space of a matrix, given by its rows. Each vector has the entry 1 in a column where the others

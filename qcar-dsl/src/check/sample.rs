@@ -7,7 +7,7 @@ use crate::expr::{Expr, Graph, Node, Symbol};
 use crate::hash::HashMap;
 use crate::model::{Default, Model, Parameter};
 
-/// Range of the values.
+/// Ranges from which values are drawn.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Kind {
     /// Numbers near 1, for the best conditioning.
@@ -20,15 +20,15 @@ pub enum Kind {
 #[derive(Clone, Copy)]
 pub struct Point<'a> {
     model: &'a Model,
-    /// Where the values come from.
+    /// The ranges of the values.
     pub kind: Kind,
     seed: u64,
-    /// Seed of all leaves that are no parameters, so that a parameter set can be tested in several motions.
+    /// Seed of all leaves other than parameters, so that a parameter set can be tested in several motions.
     motion: u64,
 }
 
 impl<'a> Point<'a> {
-    /// A point by its number.
+    /// A point, determined by its number.
     pub fn new(model: &'a Model, kind: Kind, seed: u64) -> Point<'a> {
         Point {
             model,

@@ -11,7 +11,7 @@ use crate::check::Checked;
 use crate::derive::linear::Linear;
 use crate::derive::motion::{Motion, RollingTyre};
 use crate::derive::response::{Response, sources};
-use crate::derive::vectors::{Component, Source, Vectors};
+use crate::derive::vectors::{Component, ExcitationSource, Vectors};
 use crate::expr::{CoordinateId, Expr, LinkId, Symbol};
 use crate::model::{self, Coordinate, CoordinateKind, Direction, Quantity, Term};
 use crate::units::Unit;
@@ -166,12 +166,12 @@ fn state(model: &Checked, &Component { symbol, unit }: &Component) -> Option<Sta
     })
 }
 
-fn input(model: &Checked, sources: &[Source], &Component { symbol, unit }: &Component) -> Option<Input> {
+fn input(model: &Checked, sources: &[ExcitationSource], &Component { symbol, unit }: &Component) -> Option<Input> {
     let place = |source| Some(sources.iter().position(|&other| other == source)? as u16);
     let (name, direction, kind) = match symbol {
         Symbol::Force(i) => {
             let force = &model.forces[i as usize];
-            let kind = InputKind::Force(place(Source::Force(i))?);
+            let kind = InputKind::Force(place(ExcitationSource::Force(i))?);
             (force.name.clone(), &force.direction, kind)
         }
         Symbol::Gravity(i) => {
@@ -180,7 +180,7 @@ fn input(model: &Checked, sources: &[Source], &Component { symbol, unit }: &Comp
         }
         _ => {
             let (c, quantity) = moving(symbol)?;
-            let kind = InputKind::Motion(place(Source::Motion(c))?, quantity);
+            let kind = InputKind::Motion(place(ExcitationSource::Motion(c))?, quantity);
             let c = coordinate(model, c);
             (motion_name(c, quantity), &c.direction, kind)
         }
@@ -229,7 +229,7 @@ fn reference(model: &Checked, reference: &model::Reference) -> Signal {
     match reference {
         model::Reference::Signal(of) => signal(model, of),
         model::Reference::Force(place) => {
-            let force = excitation(model, Source::Force(*place));
+            let force = excitation(model, ExcitationSource::Force(*place));
             Signal {
                 location: force.name,
                 axis: force.axis,
@@ -239,13 +239,13 @@ fn reference(model: &Checked, reference: &model::Reference) -> Signal {
     }
 }
 
-fn excitation(model: &Checked, source: Source) -> Excitation {
+fn excitation(model: &Checked, source: ExcitationSource) -> Excitation {
     let (name, direction, force, road) = match source {
-        Source::Motion(c) => {
+        ExcitationSource::Motion(c) => {
             let c = coordinate(model, c);
             (&c.name, &c.direction, false, c.kind == CoordinateKind::Road)
         }
-        Source::Force(i) => {
+        ExcitationSource::Force(i) => {
             let force = &model.forces[i as usize];
             (&force.name, &force.direction, true, false)
         }

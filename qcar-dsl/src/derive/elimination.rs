@@ -155,7 +155,7 @@ struct Step<S> {
 impl<S: Scalar> Factors<S> {
     /// Factors a matrix.
     pub fn of(g: &mut Graph, mut matrix: Symmetric<S>) -> Self {
-        let mut left = Left::of(&matrix);
+        let mut left = Remaining::of(&matrix);
         let mut steps = Vec::with_capacity(matrix.size);
         while let Some((unknown, neighbours)) = left.take() {
             let row: Vec<(usize, S)> = neighbours
@@ -225,15 +225,15 @@ impl<S: Scalar> Step<S> {
 }
 
 /// The remaining unknowns, each with those that share an entry with it.
-struct Left {
+struct Remaining {
     neighbours: Vec<BTreeSet<usize>>,
     /// By number of neighbours; among equal numbers, the last first.
     order: BTreeSet<(usize, Reverse<usize>)>,
 }
 
-impl Left {
+impl Remaining {
     fn of<S: Scalar>(matrix: &Symmetric<S>) -> Self {
-        let mut left = Left {
+        let mut left = Remaining {
             neighbours: vec![BTreeSet::new(); matrix.size],
             order: (0..matrix.size).map(|unknown| (0, Reverse(unknown))).collect(),
         };

@@ -21,6 +21,6 @@ pub mod response;
 // Names of entries, for people.
 pub mod describe;
 // Identifiability: parameters that the outputs cannot determine.
-pub mod visible;
+pub mod identifiability;
 // A single link as a model of its own.
 pub mod alone;

@@ -27,7 +27,7 @@ pub use tyre::{RollingTyre, rolling_tyre};
 #[derive(Clone, Debug)]
 pub struct Motion {
     /// Kind of motion of each coordinate, in the order of the model.
-    pub roles: Vec<Role>,
+    pub roles: Vec<MotionKind>,
     /// Symbols for expressions in the states, the inputs, the parameters and earlier definitions: stretch, rate and
     /// force of each link, positions and velocities of massless nodes, accelerations.
     pub definitions: Vec<(Symbol, Expr)>,
@@ -51,7 +51,7 @@ impl Motion {
 
 /// Kind of motion of a coordinate.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Role {
+pub enum MotionKind {
     /// A road or another motion: an input.
     Prescribed,
     /// Newton: position and velocity are states, for a mass or a node with an inerter.
@@ -91,8 +91,9 @@ struct Derivation<'a> {
     laws: Vec<Law>,
     /// The links that hold each coordinate, with its coefficient in their stretch.
     held_by: Vec<Vec<(LinkId, Expr)>>,
-    roles: Vec<Role>,
-    /// The node to which a node keeps its offset, if a group has no other damper.
+    roles: Vec<MotionKind>,
+    /// The leader of each node in a group whose dampers connect only its own nodes; the node keeps its offset from the
+    /// leader.
     leaders: BTreeMap<CoordinateId, CoordinateId>,
     /// The stretch of each link by leaders and offsets.
     reduced: Vec<Vec<(CoordinateId, Expr)>>,
@@ -172,7 +173,7 @@ impl<'a> Derivation<'a> {
         held.into_iter().filter(move |&(l, _)| Some(l) != rolling)
     }
 
-    fn with_role(&self, role: Role) -> Vec<CoordinateId> {
+    fn with_role(&self, role: MotionKind) -> Vec<CoordinateId> {
         let all = (0..self.roles.len()).filter(|&c| self.roles[c] == role);
         all.map(|c| CoordinateId(c as u16)).collect()
     }
@@ -217,7 +218,7 @@ impl<'a> Derivation<'a> {
     /// first; with their rates.
     fn states(&mut self) -> Vec<(Symbol, Expr)> {
         let model = self.model;
-        let (inertial, damped) = (self.ordered(Role::Inertial), self.ordered(Role::Damped));
+        let (inertial, damped) = (self.ordered(MotionKind::Inertial), self.ordered(MotionKind::Damped));
         let mut states: Vec<(Symbol, Expr)> = inertial.iter().map(|&c| self.moving(c)).collect();
         let accelerating = |&c: &CoordinateId| (Symbol::Velocity(c), self.g.symbol(Symbol::Acceleration(c)));
         states.extend(inertial.iter().map(accelerating));
@@ -241,7 +242,7 @@ impl<'a> Derivation<'a> {
     }
 
     /// The coordinates of a role, z first.
-    fn ordered(&self, role: Role) -> Vec<CoordinateId> {
+    fn ordered(&self, role: MotionKind) -> Vec<CoordinateId> {
         let directions = directions(self.model);
         let mut coordinates = self.with_role(role);
         coordinates.sort_by_key(|c| {

@@ -22,7 +22,7 @@ use crate::derive::complex::Complex;
 use crate::derive::elimination::{Scalar, Symmetric, outer};
 use crate::derive::motion::directions;
 use crate::derive::stiffness::{self, Stiffness};
-use crate::derive::vectors::Source;
+use crate::derive::vectors::ExcitationSource;
 use crate::expr::{CoordinateId, Expr, Graph, LinkId, Symbol};
 use crate::model::CoordinateKind;
 
@@ -35,7 +35,7 @@ use load::{Load, load, through_load};
 #[derive(Clone, Debug)]
 pub struct Response {
     /// What is excited.
-    pub source: Source,
+    pub source: ExcitationSource,
     /// Place of the output, response.
     pub outputs: Vec<(u16, Complex)>,
     /// Place in `outputs`, parameter, derivative.
@@ -61,7 +61,7 @@ pub fn responses(model: &Checked, graph: &mut Graph, wanted: Wanted) -> Vec<Resp
 }
 
 /// Excitations of a model: in each direction its prescribed motions, then its forces.
-pub fn sources(model: &Checked) -> Vec<Source> {
+pub fn sources(model: &Checked) -> Vec<ExcitationSource> {
     let coordinate = |c: CoordinateId| &model.coordinates[c.0 as usize];
     let mut sources = Vec::new();
     for direction in directions(model) {
@@ -70,10 +70,10 @@ pub fn sources(model: &Checked) -> Vec<Source> {
             coordinate(c).direction == direction
                 && matches!(coordinate(c).kind, CoordinateKind::Road | CoordinateKind::Motion)
         });
-        sources.extend(prescribed.map(Source::Motion));
+        sources.extend(prescribed.map(ExcitationSource::Motion));
         let forces = model.forces.iter().enumerate();
         let forces = forces.filter(|(_, force)| force.direction == direction);
-        sources.extend(forces.map(|(i, _)| Source::Force(i as u16)));
+        sources.extend(forces.map(|(i, _)| ExcitationSource::Force(i as u16)));
     }
     sources
 }
@@ -117,7 +117,7 @@ impl<'a> System<'a> {
         }
     }
 
-    fn respond(&self, g: &mut Graph, source: Source) -> Response {
+    fn respond(&self, g: &mut Graph, source: ExcitationSource) -> Response {
         let amplitudes = self.amplitudes(g, source);
         let moved = self.moved_by_parameters(g, source, &amplitudes);
         let mut scaled = vec![Complex::zero(g); amplitudes.len()];
@@ -158,7 +158,12 @@ impl<'a> System<'a> {
     }
 
     /// The derivatives of all amplitudes by each parameter, if there are no adjoints of the outputs.
-    fn moved_by_parameters(&self, g: &mut Graph, source: Source, amplitudes: &[Complex]) -> Vec<Vec<Complex>> {
+    fn moved_by_parameters(
+        &self,
+        g: &mut Graph,
+        source: ExcitationSource,
+        amplitudes: &[Complex],
+    ) -> Vec<Vec<Complex>> {
         let moved = |change| self.moved(g, source, amplitudes, change);
         match self.compliance.has_adjoints() {
             true => Vec::new(),
@@ -176,10 +181,10 @@ impl<'a> System<'a> {
         }
     }
 
-    fn amplitudes(&self, g: &mut Graph, source: Source) -> Vec<Complex> {
+    fn amplitudes(&self, g: &mut Graph, source: ExcitationSource) -> Vec<Complex> {
         match source {
-            Source::Force(i) => self.compliance.apply(g, &self.loads[i as usize]),
-            Source::Motion(CoordinateId(r)) => {
+            ExcitationSource::Force(i) => self.compliance.apply(g, &self.loads[i as usize]),
+            ExcitationSource::Motion(CoordinateId(r)) => {
                 let r = r as usize;
                 let all = 0..self.model.coordinates.len();
                 let forces: Load = all.filter_map(|c| Some((c, self.impedance.get(c, r)?))).collect();
@@ -189,7 +194,7 @@ impl<'a> System<'a> {
     }
 
     /// The derivative of all amplitudes by a parameter: the motion under the forces by which the balance changes.
-    fn moved(&self, g: &mut Graph, source: Source, amplitudes: &[Complex], change: &Change) -> Vec<Complex> {
+    fn moved(&self, g: &mut Graph, source: ExcitationSource, amplitudes: &[Complex], change: &Change) -> Vec<Complex> {
         let mut forces = BTreeMap::new();
         let mut push = |g: &mut Graph, c: usize, force: Complex| {
             let sum = forces.entry(c).or_insert_with(|| Complex::zero(g));
@@ -228,7 +233,7 @@ impl<'a> System<'a> {
     fn by_adjoint(
         &self,
         g: &mut Graph,
-        source: Source,
+        source: ExcitationSource,
         functional: &Functional,
         adjoint: &[Complex],
         scaled: &[Complex],

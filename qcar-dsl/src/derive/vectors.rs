@@ -3,9 +3,9 @@
 use crate::expr::{CoordinateId, Symbol};
 use crate::units::Unit;
 
-/// Kind of an excitation.
+/// An excitation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Source {
+pub enum ExcitationSource {
     /// A prescribed motion: the response is per m or rad.
     Motion(CoordinateId),
     /// A force input, by its place in `Model::forces`: the response is per N or N m.

@@ -1,6 +1,6 @@
 //! The codes of the catalogue.
 
-/// Declares the codes, each with the name that a user sees and that its refused model has in the tests.
+/// Declares the codes, each with the name that a user sees. The tests refuse a model of the same name.
 macro_rules! codes {
     ($($(#[$doc:meta])* $code:ident = $name:literal,)*) => {
         /// What kind of mistake.
@@ -24,8 +24,8 @@ macro_rules! codes {
 }
 
 impl Code {
-    /// True for mistakes of units: what makes one stands in the expression itself, so that it is one whatever else of
-    /// the text cannot be read.
+    /// True for mistakes of units. They depend on the expression alone, so they remain mistakes if other parts of the
+    /// text cannot be read.
     pub fn is_of_units(self) -> bool {
         use Code::{ArgumentHasUnit, NotCoherent, OddExponent, UnitsDiffer, UnknownUnit, WrongUnit};
         matches!(
@@ -42,17 +42,17 @@ codes! {
     UnterminatedText = "unterminated_text",
     /// An opening bracket without its closing one.
     UnclosedBracket = "unclosed_bracket",
-    /// A comment that goes on to the end of the file.
+    /// A comment without its closing mark.
     UnclosedComment = "unclosed_comment",
     /// A closing bracket that closes nothing.
     StrayBracket = "stray_bracket",
-    /// Brackets or expressions nested beyond reason.
+    /// Brackets or expressions that are nested too deeply, or too long.
     NestedTooDeep = "nested_too_deep",
     /// What the lexer refuses for any other reason.
     Unreadable = "unreadable",
     /// A number that is not finite.
     NumberTooLarge = "number_too_large",
-    /// Something other than what the grammar expects.
+    /// A token that the grammar does not allow at this place.
     Expected = "expected",
     /// Two values side by side.
     MissingOperator = "missing_operator",
@@ -62,11 +62,11 @@ codes! {
     AmbiguousUnit = "ambiguous_unit",
     /// A statement that begins with an unknown word.
     UnknownStatement = "unknown_statement",
-    /// A statement in a block where it means nothing.
+    /// A statement in the wrong kind of block.
     MisplacedStatement = "misplaced_statement",
     /// A patch where a model is expected.
     EffectIsNoModel = "effect_is_no_model",
-    /// A name that Rust, the language or a unit has taken.
+    /// A name that Rust, the language or a unit reserves.
     ReservedName = "reserved_name",
     /// A name that is not in lower case.
     NameNotLowerCase = "name_not_lower_case",
@@ -74,7 +74,7 @@ codes! {
     NotOneModel = "not_one_model",
     /// A family's file that cannot be read.
     FamilyNotLoaded = "family_not_loaded",
-    /// `from` a file that holds no family.
+    /// `from` with a file that contains no family.
     NotAFamily = "not_a_family",
     /// A choice or condition of an option that the family does not have.
     UnknownOption = "unknown_option",
@@ -86,21 +86,21 @@ codes! {
     RequirementFailed = "requirement_failed",
     /// An option that no condition asks about.
     UnusedOption = "unused_option",
-    /// Two things of one name.
+    /// A name that is declared twice.
     DuplicateName = "duplicate_name",
-    /// A name that nothing has.
+    /// A name that is not declared.
     UnknownName = "unknown_name",
-    /// A name that an option has taken away.
+    /// A name whose declaration is switched off by an option.
     SwitchedOff = "switched_off",
     /// A derived quantity used above its declaration.
     UsedBeforeDeclared = "used_before_declared",
-    /// A name of a global inside an element.
+    /// A parameter or derived quantity of the model, used inside an element.
     ElementIsClosed = "element_is_closed",
     /// `s` or `v` outside of a law.
     LawVariableOutside = "law_variable_outside",
     /// A coordinate where only parameters are known.
     CoordinateInExpression = "coordinate_in_expression",
-    /// A name that several directions have, without its direction.
+    /// A name that exists in several directions, used without its direction.
     AmbiguousDirection = "ambiguous_direction",
     /// A direction that the model does not have.
     UnknownDirection = "unknown_direction",
@@ -110,21 +110,21 @@ codes! {
     WrongArguments = "wrong_arguments",
     /// An element that the file does not have.
     UnknownElement = "unknown_element",
-    /// An element inside itself.
+    /// An element that contains itself.
     RecursiveElement = "recursive_element",
     /// An element that no law uses.
     UnusedElement = "unused_element",
     /// A derived quantity that nothing uses.
     UnusedLet = "unused_let",
-    /// A second gravity in a direction.
+    /// A second gravity in one direction.
     SecondGravity = "second_gravity",
     /// A force or gravity that is used like a coordinate, a link that is used like a mass, and so on.
     WrongKind = "wrong_kind",
     /// A force input on a prescribed motion.
     ForceOnPrescribed = "force_on_prescribed",
-    /// A signal of a quantity that the thing does not have.
+    /// A quantity that the point or link does not have.
     UnknownQuantity = "unknown_quantity",
-    /// A parameter whose default is itself, by way of others or not.
+    /// A parameter whose default refers to itself, directly or through other parameters.
     CircularDefault = "circular_default",
     /// A symbol that is no unit.
     UnknownUnit = "unknown_unit",
@@ -134,25 +134,25 @@ codes! {
     OddExponent = "odd_exponent",
     /// Summands, branches or sides of different units.
     UnitsDiffer = "units_differ",
-    /// A quantity in another unit than its place asks for.
+    /// A quantity in a unit other than the required one.
     WrongUnit = "wrong_unit",
-    /// A function of a quantity with a unit.
+    /// A function, such as `exp`, of a quantity with a unit.
     ArgumentHasUnit = "argument_has_unit",
-    /// A power of a quantity with a unit to something that is no number.
+    /// A quantity with a unit, raised to an exponent that is not a constant.
     ExponentNotConstant = "exponent_not_constant",
     /// A constant expression without a finite value.
     NotFinite = "not_finite",
-    /// A table with more abscissae than ordinates, or fewer.
+    /// A table whose numbers of abscissae and ordinates differ.
     TableLengthsDiffer = "table_lengths_differ",
     /// A table with fewer than two points, or too many.
     TableSize = "table_size",
-    /// An abscissa of a table that is no number.
+    /// An abscissa of a table that is not a constant.
     TableNotConstant = "table_not_constant",
     /// Abscissae of a table out of order.
     TableNotIncreasing = "table_not_increasing",
-    /// A literal zero below a fraction bar.
+    /// A division by a literal zero.
     DivisionByZero = "division_by_zero",
-    /// Parts of a stretch that move, multiplied or put into a function.
+    /// A stretch that is not linear in the coordinates.
     StretchNotLinear = "stretch_not_linear",
     /// A constant in a stretch.
     StretchHasConstant = "stretch_has_constant",
@@ -162,17 +162,17 @@ codes! {
     StretchUnit = "stretch_unit",
     /// A link whose law is empty.
     EmptyLaw = "empty_law",
-    /// A state whose rate is not given, or given twice.
+    /// A state whose rate is not given.
     StateWithoutRate = "state_without_rate",
-    /// A rate of something that is no state.
+    /// A rate of a name that is not a state.
     RateWithoutState = "rate_without_state",
     /// A state whose rate is given twice.
     SecondRate = "second_rate",
     /// A `rolling` block in a link without a road.
     RollingWithoutRoad = "rolling_without_road",
-    /// States, or a second block, inside `rolling`.
+    /// States or rates inside `rolling`.
     RollingChangesStates = "rolling_changes_states",
-    /// A statement in an element or a `rolling` block that belongs in a link.
+    /// A second `rolling` block, or one outside of a link.
     SecondRolling = "second_rolling",
     /// A range whose bounds are in the wrong order.
     RangeReversed = "range_reversed",
@@ -180,19 +180,19 @@ codes! {
     DefaultOutsideRange = "default_outside_range",
     /// A parameter that nothing uses.
     UnusedParameter = "unused_parameter",
-    /// A state of a name that the law has already.
+    /// A second state with the same name in one law.
     SecondState = "second_state",
     /// A coefficient of a linear term that depends on the motion.
     CoefficientVaries = "coefficient_varies",
-    /// Masses that nothing holds.
+    /// Masses that no link holds.
     MassNotHeld = "mass_not_held",
-    /// Masses that gravity pulls down for ever.
+    /// Masses whose weight no spring carries.
     MassSinks = "mass_sinks",
     /// A node that no link touches.
     NodeNotAttached = "node_not_attached",
     /// A node whose balance is a nonlinear equation.
     NodeNonlinear = "node_nonlinear",
-    /// Nodes that are connected with each other only.
+    /// Nodes that are connected only to each other.
     NodesFloat = "nodes_float",
     /// An inertia that is zero or negative at its defaults or everywhere.
     InertiaNotPositive = "inertia_not_positive",
@@ -200,9 +200,9 @@ codes! {
     InertiaCanVanish = "inertia_can_vanish",
     /// A damper or inerter that can be negative.
     NegativeDamping = "negative_damping",
-    /// A law that pushes along with the motion.
+    /// A law that supplies energy.
     LawGivesEnergy = "law_gives_energy",
-    /// Two links that are one.
+    /// Two links with the same stretch and the same kind of term.
     DuplicateLink = "duplicate_link",
     /// A prescribed motion that no link touches.
     MotionNotUsed = "motion_not_used",
@@ -214,13 +214,13 @@ codes! {
     ForceRateNeeded = "force_rate_needed",
     /// A gravity in a direction without masses.
     GravityPullsNothing = "gravity_pulls_nothing",
-    /// A model with nothing to see.
+    /// A model without outputs.
     NothingToSee = "nothing_to_see",
     /// A model that no input moves.
     NothingMoves = "nothing_moves",
     /// A parameter that no response depends on.
     ParameterNotSeen = "parameter_not_seen",
-    /// Parameters of which outputs see a combination only.
+    /// Parameters that affect the outputs only in combination.
     OnlyTogether = "only_together",
     /// No effect in a file, or several.
     NotOneEffect = "not_one_effect",
@@ -228,24 +228,24 @@ codes! {
     EffectNotDescribed = "effect_not_described",
     /// A kind of linear term that the language does not have.
     UnknownTerm = "unknown_term",
-    /// A role of a place.
+    /// A role that no part of a model has.
     UnknownRole = "unknown_role",
     /// An effect of a sensor that changes the model.
     SensorChangesModel = "sensor_changes_model",
     /// A place that the pattern of an effect does not fit.
     NoSuchPlace = "no_such_place",
-    /// Something that an effect asks of a place that has none.
+    /// A property that an effect uses and that its place does not have.
     PlaceLacks = "place_lacks",
-    /// A name of an effect that the model has already.
+    /// A name that an effect declares and the model has already.
     AlreadyInModel = "already_in_model",
-    /// A state of an effect that the link has already.
+    /// A state that an effect declares and the link has already.
     AlreadyInLink = "already_in_link",
-    /// A start or bound of another unit than its parameter.
+    /// A start or bound in a unit other than that of its parameter.
     StartOfOtherUnit = "start_of_other_unit",
     /// A start that is not between its bounds.
     StartOutsideRange = "start_outside_range",
     /// A second strength of a form.
     SecondStrength = "second_strength",
-    /// A strength that vanishes where it never is.
+    /// A strength whose vanishing value is outside of its range.
     VanishesOutsideRange = "vanishes_outside_range",
 }

@@ -63,7 +63,7 @@ pub fn no_such_place(span: Span, effect: &str, place: &str, model: &str, places:
         .hint(hint)
 }
 
-/// Something that an effect asks of a place that has none.
+/// A property that an effect uses and that its place does not have.
 pub fn place_lacks(span: Span, wanted: &str, name: &str) -> Diagnostic {
     Diagnostic::error(
         Code::PlaceLacks,
@@ -90,7 +90,7 @@ pub fn already_in_link(span: Span, name: &str, link: &str) -> Diagnostic {
     .hint("apply each effect to a link once; for a second law of this kind, write an effect with other names")
 }
 
-/// A start or bound of another unit than its parameter.
+/// A start or bound in a unit other than that of its parameter.
 pub fn start_of_other_unit(span: Span, what: &str, expected: &str, found: &str) -> Diagnostic {
     Diagnostic::error(
         Code::StartOfOtherUnit,
@@ -121,7 +121,7 @@ pub fn second_strength(span: Span, first: Span, effect: &str, name: &str) -> Dia
         .hint("write `strength` before the one parameter with which all of the effect vanishes; leave it out elsewhere")
 }
 
-/// A strength that vanishes where it never is.
+/// A strength whose vanishing value is outside of its range.
 pub fn vanishes_outside_range(span: Span, name: &str, value: f64, low: f64, high: f64) -> Diagnostic {
     let message = format!("`{name}` vanishes at {value:?}, which is not between {low:?} and {high:?}");
     Diagnostic::error(Code::VanishesOutsideRange, message)
@@ -131,7 +131,7 @@ pub fn vanishes_outside_range(span: Span, name: &str, value: f64, low: f64, high
         )
 }
 
-/// Whether a mistake is that nothing uses a name.
+/// True if the mistake is an unused name.
 pub fn is_about_use(diagnostic: &Diagnostic) -> bool {
     matches!(
         diagnostic.code,

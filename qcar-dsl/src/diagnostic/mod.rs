@@ -16,9 +16,9 @@ pub mod names;
 pub mod units;
 // Curves through points.
 pub mod tables;
-// What is held, what can be solved, what takes energy.
+// Support, solvability and passivity.
 pub mod structure;
-// What an output can see.
+// Outputs and identifiability.
 pub mod visibility;
 // Effects and their places.
 pub mod effects;
@@ -27,7 +27,7 @@ mod render;
 
 pub use code::Code;
 
-/// Severity.
+/// How severe a mistake is.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Severity {
     /// The model is refused.
@@ -39,7 +39,7 @@ pub enum Severity {
 /// A position with a short text.
 #[derive(Clone, Debug)]
 pub struct Label {
-    /// The place.
+    /// The position.
     pub span: Span,
     /// A few words.
     pub text: String,
@@ -48,7 +48,7 @@ pub struct Label {
 /// A mistake.
 #[derive(Clone, Debug)]
 pub struct Diagnostic {
-    /// Code.
+    /// The kind of mistake.
     pub code: Code,
     /// Error or warning.
     pub severity: Severity,
@@ -56,7 +56,7 @@ pub struct Diagnostic {
     pub message: String,
     /// Labels; the first is at the position of the mistake.
     pub labels: Vec<Label>,
-    /// Remedy.
+    /// The remedy, as a sentence that says what to write.
     pub hint: String,
 }
 
@@ -102,7 +102,7 @@ impl Diagnostic {
     }
 }
 
-/// The mistakes of one compilation, with the texts they are in.
+/// The mistakes of one compilation, with the texts that contain them.
 #[derive(Clone, Debug, Default)]
 pub struct Report {
     /// The model file first, then what it loads.
@@ -154,7 +154,8 @@ fn listed<Word: AsRef<str>>(words: &[Word], last: &str) -> String {
     }
 }
 
-/// The name that a misspelt one most likely means; `None` for names so short that they resemble every other.
+/// The candidate that a misspelt name most likely means. `None` if no candidate is near enough, or if the name has one
+/// or two letters, which resemble any other name.
 fn nearest<'a, Word: AsRef<str>>(name: &str, candidates: &'a [Word]) -> Option<&'a str> {
     let distance = |word: &&str| levenshtein(name, word);
     let best = candidates.iter().map(AsRef::as_ref).min_by_key(distance)?;

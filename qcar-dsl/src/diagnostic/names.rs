@@ -13,7 +13,7 @@ pub fn family_not_loaded(span: Span, path: &str, reason: &str) -> Diagnostic {
     .hint("write the family's path relative to this file, such as `\"../families/corner.axle\"`")
 }
 
-/// `from` a file that holds no family.
+/// `from` with a file that contains no family.
 pub fn not_a_family(span: Span, path: &str) -> Diagnostic {
     Diagnostic::error(Code::NotAFamily, format!("\"{path}\" contains no family"))
         .label(span, "an axle is chosen from a family")
@@ -67,7 +67,7 @@ pub fn unused_option(span: Span, option: &str) -> Diagnostic {
         .hint(format!("write `if {option} == … {{ … }}`, or remove the option"))
 }
 
-/// Two things of one name.
+/// A name that is declared twice.
 pub fn duplicate_name(span: Span, first: Span, name: &str, place: &str) -> Diagnostic {
     Diagnostic::error(Code::DuplicateName, format!("`{name}` is declared twice in {place}"))
         .label(span, "again here")
@@ -75,7 +75,7 @@ pub fn duplicate_name(span: Span, first: Span, name: &str, place: &str) -> Diagn
         .hint("write another name for one of them")
 }
 
-/// A name that nothing has.
+/// A name that is not declared.
 pub fn unknown_name(span: Span, name: &str, place: &str, known: &[String]) -> Diagnostic {
     let hint = match nearest(name, known) {
         Some(near) => format!("write `{near}`"),
@@ -87,7 +87,7 @@ pub fn unknown_name(span: Span, name: &str, place: &str, known: &[String]) -> Di
         .hint(hint)
 }
 
-/// A name that an option has taken away.
+/// A name whose declaration is switched off by an option.
 pub fn switched_off(span: Span, name: &str, options: &str) -> Diagnostic {
     Diagnostic::error(Code::SwitchedOff, format!("`{name}` is switched off by {options}"))
         .label(span, "not part of this member of the family")
@@ -107,7 +107,7 @@ pub fn used_before_declared(span: Span, declared: Span, name: &str) -> Diagnosti
     .hint(format!("write `let {name} = …;` above this line"))
 }
 
-/// A name of a global inside an element.
+/// A parameter or derived quantity of the model, used inside an element.
 pub fn element_is_closed(span: Span, name: &str, unit: &str) -> Diagnostic {
     Diagnostic::error(
         Code::ElementIsClosed,
@@ -144,7 +144,7 @@ pub fn coordinate_in_expression(span: Span, name: &str) -> Diagnostic {
     .hint("write it in the stretch of a link, `link name: a - b { … }`, whose law uses `s` and `v`")
 }
 
-/// A name that several directions have, without its direction.
+/// A name that exists in several directions, used without its direction.
 pub fn ambiguous_direction(span: Span, name: &str, directions: &[String]) -> Diagnostic {
     let full: Vec<String> = directions
         .iter()
@@ -213,7 +213,7 @@ pub fn unknown_element(span: Span, name: &str, known: &[String]) -> Diagnostic {
         .hint(hint)
 }
 
-/// An element inside itself.
+/// An element that contains itself.
 pub fn recursive_element(span: Span, chain: &[String]) -> Diagnostic {
     Diagnostic::error(
         Code::RecursiveElement,
@@ -240,11 +240,11 @@ pub fn unused_parameter(span: Span, name: &str) -> Diagnostic {
 /// A derived quantity that nothing uses.
 pub fn unused_let(span: Span, name: &str) -> Diagnostic {
     Diagnostic::warning(Code::UnusedLet, format!("`{name}` is never used"))
-        .label(span, "derived for nothing")
+        .label(span, "no expression uses it")
         .hint("use it, or remove the line")
 }
 
-/// A second gravity in a direction.
+/// A second gravity in one direction.
 pub fn second_gravity(span: Span, first: Span, direction: &str) -> Diagnostic {
     Diagnostic::error(Code::SecondGravity, format!("direction {direction} has two gravities"))
         .label(span, "again here")
@@ -269,7 +269,7 @@ pub fn force_on_prescribed(span: Span, name: &str) -> Diagnostic {
     .hint("write a mass or node, such as `force f_wheel_z on wheel;`")
 }
 
-/// A signal of a quantity that the thing does not have.
+/// A quantity that the point or link does not have.
 pub fn unknown_quantity(span: Span, found: &str, owner: &str, quantities: &[&str]) -> Diagnostic {
     let hint = format!(
         "write {}",
@@ -280,7 +280,7 @@ pub fn unknown_quantity(span: Span, found: &str, owner: &str, quantities: &[&str
         .hint(hint)
 }
 
-/// A parameter whose default is itself, by way of others or not.
+/// A parameter whose default refers to itself, directly or through other parameters.
 pub fn circular_default(span: Span, chain: &[String]) -> Diagnostic {
     Diagnostic::error(
         Code::CircularDefault,

@@ -30,14 +30,14 @@ pub fn unclosed_bracket(span: Span, open: char, close: char) -> Diagnostic {
         .hint(format!("write `{close}` where it ends"))
 }
 
-/// A comment that goes on to the end of the file.
+/// A comment without its closing mark.
 pub fn unclosed_comment(span: Span) -> Diagnostic {
     Diagnostic::error(Code::UnclosedComment, "a comment is never closed")
         .label(span, "begins here")
         .hint("write `*/` where it ends, or `//` for a comment of one line")
 }
 
-/// A closing bracket that closes nothing, or something else.
+/// A closing bracket without its opening one, or of another kind than the open one.
 pub fn stray_bracket(span: Span, found: char, open: Option<(Span, char)>) -> Diagnostic {
     let diagnostic = Diagnostic::error(Code::StrayBracket, format!("`{found}` closes nothing"));
     match open {
@@ -51,11 +51,14 @@ pub fn stray_bracket(span: Span, found: char, open: Option<(Span, char)>) -> Dia
     }
 }
 
-/// Brackets or expressions nested beyond reason.
+/// Brackets or expressions that are nested too deeply, or too long.
 pub fn nested_too_deep(span: Span) -> Diagnostic {
-    Diagnostic::error(Code::NestedTooDeep, "this is nested too deep, or too long, to be read")
-        .label(span, "beyond the limit")
-        .hint("write parts of it as `let part = …;`")
+    Diagnostic::error(
+        Code::NestedTooDeep,
+        "this is nested too deeply, or too long, to be read",
+    )
+    .label(span, "beyond the limit")
+    .hint("write parts of it as `let part = …;`")
 }
 
 /// What the lexer refuses for any other reason.
@@ -72,14 +75,14 @@ pub fn number_too_large(span: Span) -> Diagnostic {
         .hint("write a number below 1e308")
 }
 
-/// A number of more digits than any needs.
+/// A number with more digits than a 64-bit number needs.
 pub fn number_too_long(span: Span, digits: usize) -> Diagnostic {
     Diagnostic::error(Code::NumberTooLarge, format!("this number has {digits} digits"))
         .label(span, "beyond the limit")
         .hint("write it with an exponent, such as 25.4e3")
 }
 
-/// Something other than what the grammar expects.
+/// A token that the grammar does not allow at this place.
 pub fn expected(span: Span, expected: &str, found: &str, example: &str) -> Diagnostic {
     Diagnostic::error(Code::Expected, format!("expected {expected}, found {found}"))
         .label(span, format!("expected {expected}"))
@@ -103,7 +106,7 @@ pub fn equality_of_values(span: Span) -> Diagnostic {
         .hint("write `if abs(a - b) < tolerance { … } else { … }`; options are compared by an `if` around statements")
 }
 
-/// `N/m s`, which people read in two ways.
+/// `N/m s`, which can be read in two ways.
 pub fn ambiguous_unit(span: Span, before: &str, after: &str) -> Diagnostic {
     Diagnostic::error(
         Code::AmbiguousUnit,
@@ -117,7 +120,7 @@ pub fn ambiguous_unit(span: Span, before: &str, after: &str) -> Diagnostic {
 pub fn unknown_statement(span: Span, found: &str, known: &[&str]) -> Diagnostic {
     let word = found.trim_matches('`');
     let hint = match nearest(word, known) {
-        // What Rust makes of `///` and `//!`.
+        // The lexer turns `///` and `//!` into attributes, which begin with `#`.
         _ if word == "#" => "write a comment as `// …`".to_string(),
         Some(near) => format!("write `{near} …`"),
         None => format!("write a statement that begins with {}", one_of(known)),
@@ -127,7 +130,7 @@ pub fn unknown_statement(span: Span, found: &str, known: &[&str]) -> Diagnostic 
         .hint(hint)
 }
 
-/// A statement in a block where it means nothing.
+/// A statement in the wrong kind of block.
 pub fn misplaced_statement(span: Span, word: &str, home: &str) -> Diagnostic {
     Diagnostic::error(Code::MisplacedStatement, format!("`{word}` does not belong here"))
         .label(span, format!("belongs in {home}"))
@@ -137,11 +140,11 @@ pub fn misplaced_statement(span: Span, word: &str, home: &str) -> Diagnostic {
 /// A patch where a model is expected.
 pub fn effect_is_no_model(span: Span) -> Diagnostic {
     Diagnostic::error(Code::EffectIsNoModel, "effects are files of models/effects, not models")
-        .label(span, "an effect changes a model; it is none")
+        .label(span, "this is an effect, not a model")
         .hint("write `axle name { … }`, and keep effects in files of their own")
 }
 
-/// A name that Rust, the language or a unit has taken.
+/// A name that Rust, the language or a unit reserves.
 pub fn reserved_name(span: Span, name: &str, owner: &str) -> Diagnostic {
     Diagnostic::error(
         Code::ReservedName,

@@ -28,11 +28,11 @@ impl Report {
         self.diagnostics.iter().take(MOST).map(line).collect::<String>() + &self.further()
     }
 
-    /// Text on the omitted mistakes.
+    /// A line that counts the omitted mistakes.
     fn further(&self) -> String {
         match self.diagnostics.len().saturating_sub(MOST) {
             0 => String::new(),
-            more => format!("and {more} more of this kind; correct the first ones and try again\n"),
+            more => format!("and {more} more mistakes; correct the first ones and try again\n"),
         }
     }
 

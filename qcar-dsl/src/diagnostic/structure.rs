@@ -3,7 +3,7 @@
 use super::{Code, Diagnostic, all_of};
 use crate::source::Span;
 
-/// Things with the places of their names.
+/// Names with their positions.
 type Named<'a> = [(Span, &'a str)];
 
 fn names(named: &Named) -> String {
@@ -16,7 +16,7 @@ fn label_all(diagnostic: Diagnostic, named: &Named, text: &str) -> Diagnostic {
         .fold(diagnostic, |diagnostic, (span, _)| diagnostic.label(*span, text))
 }
 
-/// Masses that nothing holds.
+/// Masses that no link holds.
 pub fn mass_not_held(masses: &Named) -> Diagnostic {
     let message = format!("nothing holds {}: a rigid-body mode", names(masses));
     let first = masses.first().map_or("body", |(_, name)| name);
@@ -30,7 +30,7 @@ pub fn mass_not_held(masses: &Named) -> Diagnostic {
     ))
 }
 
-/// Masses that gravity pulls down for ever.
+/// Masses whose weight no spring carries.
 pub fn mass_sinks(masses: &Named) -> Diagnostic {
     let message = format!(
         "gravity accelerates {} without limit: no spring carries the weight",
@@ -74,7 +74,7 @@ pub fn node_nonlinear(span: Span, name: &str, link: (Span, &str), what: &str) ->
     ))
 }
 
-/// Nodes that are connected with each other only.
+/// Nodes that are connected only to each other.
 pub fn nodes_float(nodes: &Named, what: &str) -> Diagnostic {
     let message = format!(
         "the balance of {} cannot be solved: the nodes are connected only to each other",
@@ -129,15 +129,15 @@ pub fn negative_damping(span: Span, link: &str, what: &str, lowest: f64, at: &[S
     )
 }
 
-/// A law that pushes along with the motion.
+/// A law without inner states that supplies energy.
 pub fn law_gives_energy(span: Span, link: &str, s: f64, v: f64) -> Diagnostic {
     let message = format!("the law of link `{link}` supplies energy at s = {s:.3}, v = {v:.3}");
     Diagnostic::error(Code::LawGivesEnergy, message)
-        .label(span, "supports the motion there")
+        .label(span, "acts in the direction of the motion there")
         .hint("write the force that resists, `force = c*v` with a positive `c`; or add `active;`, if it is meant to supply energy")
 }
 
-/// A law with inner states that pushes small vibrations on.
+/// A law with inner states that supplies energy to small vibrations.
 pub fn law_feeds_vibrations(span: Span, link: &str, frequency: f64) -> Diagnostic {
     let message = format!("the law of link `{link}` supplies energy to vibrations about rest at {frequency} rad/s");
     Diagnostic::error(Code::LawGivesEnergy, message)
@@ -145,11 +145,11 @@ pub fn law_feeds_vibrations(span: Span, link: &str, frequency: f64) -> Diagnosti
         .hint("write a state that decays and a force that resists, `rate f = k*v - k/c*f; force = f;`; or add `active;`, if it is meant to supply energy")
 }
 
-/// Links whose laws use each other, and that together push along with the motion.
+/// Links whose laws use each other, and that together supply energy.
 pub fn links_give_energy(links: &Named, span: Span) -> Diagnostic {
     let message = format!("the laws of {} together supply energy", names(links));
     Diagnostic::error(Code::LawGivesEnergy, message)
-        .label(span, "supports the motion of the others")
+        .label(span, "acts in the direction of the motion")
         .hint("write forces that together resist the rates; or add `active;` to one of them, if they are meant to supply energy")
 }
 
@@ -176,7 +176,7 @@ pub fn coupled_at_node(link: (Span, &str), node: (Span, &str)) -> Diagnostic {
         .hint(format!("write `mass {} = …;` with the mass of the real part", node.1))
 }
 
-/// Two links that are one.
+/// Two links with the same stretch and the same kind of term.
 pub fn duplicate_link((span, first_span): (Span, Span), name: &str, first: &str, kind: &str) -> Diagnostic {
     let message = format!("link `{name}` repeats the {kind} of link `{first}`");
     Diagnostic::error(Code::DuplicateLink, message)
@@ -203,7 +203,7 @@ pub fn force_not_used(span: Span, name: &str) -> Diagnostic {
         ))
 }
 
-/// A motion of a massless node that follows a force input at once.
+/// A motion of a massless node that would need the rate of a force input.
 pub fn force_rate_needed((span, node): (Span, &str), (force_span, force): (Span, &str), motion: &str) -> Diagnostic {
     let message = format!("the {motion} of the massless node `{node}` would need the rate of force `{force}`");
     Diagnostic::error(Code::ForceRateNeeded, message)
@@ -216,7 +216,7 @@ pub fn force_rate_needed((span, node): (Span, &str), (force_span, force): (Span,
 
 /// A gravity in a direction without masses.
 pub fn gravity_pulls_nothing(span: Span, name: &str, direction: &str) -> Diagnostic {
-    Diagnostic::warning(Code::GravityPullsNothing, format!("gravity `{name}` pulls nothing"))
+    Diagnostic::warning(Code::GravityPullsNothing, format!("gravity `{name}` acts on no mass"))
         .label(span, format!("direction {direction} has no mass"))
         .hint("remove the line")
 }

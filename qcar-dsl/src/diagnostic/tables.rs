@@ -22,7 +22,7 @@ pub fn size(span: Span, found: usize, most: usize) -> Diagnostic {
         ))
 }
 
-/// An abscissa that is no number.
+/// An abscissa that is not a constant.
 pub fn not_constant(span: Span) -> Diagnostic {
     Diagnostic::error(Code::TableNotConstant, "an abscissa of a table is not a constant")
         .label(span, "depends on a parameter or on the motion")

@@ -39,14 +39,14 @@ pub fn units_differ(left: (Span, String), right: (Span, String), what: &str) -> 
         .hint("write both in the same unit: a factor or a unit, as in `40 mm`, may be missing or superfluous")
 }
 
-/// A quantity in another unit than its place asks for.
+/// A quantity in a unit other than the required one.
 pub fn wrong_unit(span: Span, what: &str, expected: &str, found: &str) -> Diagnostic {
     Diagnostic::error(Code::WrongUnit, format!("{what} is in {expected}, not in {found}"))
         .label(span, format!("this is in {found}"))
         .hint(format!("write an expression in {expected}"))
 }
 
-/// A function of a quantity with a unit.
+/// A function, such as `exp`, of a quantity with a unit.
 pub fn argument_has_unit(span: Span, function: &str, unit: &str) -> Diagnostic {
     Diagnostic::error(
         Code::ArgumentHasUnit,
@@ -56,7 +56,7 @@ pub fn argument_has_unit(span: Span, function: &str, unit: &str) -> Diagnostic {
     .hint(format!("write `{function}(x/x_ref)` with a reference value in {unit}"))
 }
 
-/// A power of a quantity with a unit to something that is no number.
+/// A quantity with a unit, raised to an exponent that is not a constant.
 pub fn exponent_not_constant(span: Span, unit: &str) -> Diagnostic {
     Diagnostic::error(
         Code::ExponentNotConstant,
@@ -74,14 +74,14 @@ pub fn not_finite(span: Span, value: f64) -> Diagnostic {
         .hint("write an expression with a finite value, such as the root of a positive number")
 }
 
-/// A literal zero below a fraction bar.
+/// A division by a literal zero.
 pub fn division_by_zero(span: Span) -> Diagnostic {
     Diagnostic::error(Code::DivisionByZero, "this divides by zero")
         .label(span, "always 0")
         .hint("write a divisor that is not zero")
 }
 
-/// Parts of a stretch that move, multiplied or put into a function.
+/// A stretch that is not linear in the coordinates.
 pub fn stretch_not_linear(span: Span) -> Diagnostic {
     Diagnostic::error(
         Code::StretchNotLinear,
@@ -132,14 +132,14 @@ pub fn empty_law(span: Span, name: &str) -> Diagnostic {
         .hint("write `spring k;`, `damper c;`, `inerter b;` or `force = …;` into its braces")
 }
 
-/// A state whose rate is not given, or given twice.
+/// A state whose rate is not given.
 pub fn state_without_rate(span: Span, name: &str) -> Diagnostic {
     Diagnostic::error(Code::StateWithoutRate, format!("state `{name}` has no rate"))
         .label(span, "its rate is missing")
         .hint(format!("write `rate {name} = …;` beside it"))
 }
 
-/// A state of a name that the law has already.
+/// A second state with the same name in one law.
 pub fn second_state(span: Span, name: &str, element: Option<&str>) -> Diagnostic {
     let hint = match element {
         Some(element) => format!("write `second: {element}(…);` to tell the two uses apart"),
@@ -157,7 +157,7 @@ pub fn coefficient_varies(span: Span, what: &str) -> Diagnostic {
         .hint("write a law of its own: `force = k*s*(1 + s/s_0);`")
 }
 
-/// A rate of something that is no state.
+/// A rate of a name that is not a state.
 pub fn rate_without_state(span: Span, name: &str, unit: &str) -> Diagnostic {
     Diagnostic::error(Code::RateWithoutState, format!("`{name}` is no state of this law"))
         .label(span, "no state of that name")
@@ -181,7 +181,7 @@ pub fn rolling_without_road(span: Span, link: &str) -> Diagnostic {
     .hint("write `road pad;` and a stretch such as `wheel - pad`, or remove the block")
 }
 
-/// States, or a second block, inside `rolling`.
+/// States or rates inside `rolling`.
 pub fn rolling_changes_states(span: Span) -> Diagnostic {
     Diagnostic::error(
         Code::RollingChangesStates,
@@ -191,10 +191,10 @@ pub fn rolling_changes_states(span: Span) -> Diagnostic {
     .hint("write states and rates outside of `rolling`; inside, use them in forces")
 }
 
-/// A statement in an element or a `rolling` block that belongs in a link.
+/// A second `rolling` block, or one outside of a link.
 pub fn second_rolling(span: Span) -> Diagnostic {
     Diagnostic::error(Code::SecondRolling, "a `rolling` block stands once, directly in a link")
-        .label(span, "here it means nothing")
+        .label(span, "not directly in a link, or not the first")
         .hint("write one `rolling { … }` into the link")
 }
 

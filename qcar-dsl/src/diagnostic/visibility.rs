@@ -3,7 +3,7 @@
 use super::{Code, Diagnostic, all_of};
 use crate::source::Span;
 
-/// A model with nothing to see.
+/// A model without outputs.
 pub fn nothing_to_see(span: Span) -> Diagnostic {
     Diagnostic::error(Code::NothingToSee, "the model has no output: no mass, and no `output`")
         .label(span, "this model")
@@ -29,7 +29,7 @@ pub fn parameter_not_seen(span: Span, name: &str) -> Diagnostic {
     ))
 }
 
-/// Parameters of which outputs see fewer combinations than there are parameters.
+/// Parameters of which the outputs determine fewer combinations than there are parameters.
 pub fn only_together(parameters: &[(Span, &str)], seen: usize, combination: Option<&str>) -> Diagnostic {
     let names: Vec<&str> = parameters.iter().map(|(_, name)| *name).collect();
     let what = match (combination, seen) {

@@ -1,12 +1,12 @@
 //! Arithmetic on expressions as it is written on paper: `g.of(a - l * b)`.
 //!
-//! An operator only notes what is wanted; [`Graph::of`] makes the nodes, left operand first.
+//! An operator only stores its operands; [`Graph::of`] creates the nodes, left operand first.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::{Expr, Function, Graph};
 
-/// What a graph can make an expression of.
+/// A formula that a graph can turn into an expression.
 pub trait Formula {
     /// Its expression.
     fn of(self, g: &mut Graph) -> Expr;
@@ -51,7 +51,7 @@ impl Formula for Call {
     }
 }
 
-/// The opposite of a formula.
+/// The negative of a formula.
 pub struct Opposite<A>(A);
 
 impl<A: Formula> Formula for Opposite<A> {

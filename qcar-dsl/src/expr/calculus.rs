@@ -6,7 +6,7 @@ use crate::hash::HashMap;
 /// The derivative of `y = f(x)` by `x`, as an expression in both.
 type Slope = fn(&mut Graph, Expr, Expr) -> Expr;
 
-/// The law of a function: its value and its slope.
+/// The value and the slope of a function.
 #[rustfmt::skip]
 fn law(f: Function) -> (fn(f64) -> f64, Slope) {
     match f {
@@ -23,7 +23,7 @@ fn law(f: Function) -> (fn(f64) -> f64, Slope) {
     }
 }
 
-/// The direction of a number: unlike `f64::signum`, zero has none.
+/// The sign of a number; unlike `f64::signum`, the sign of zero is zero.
 fn sign(x: f64) -> f64 {
     if x > 0.0 {
         1.0
@@ -41,7 +41,7 @@ impl Function {
     }
 }
 
-/// The derivative of expressions whose leaves have given derivatives: by a variable, by time, along a direction.
+/// Derivatives of expressions whose leaves have given derivatives: by a variable, by time, or along a direction.
 #[derive(Clone, Debug)]
 pub struct Differential {
     leaves: Leaves,
@@ -49,7 +49,7 @@ pub struct Differential {
 }
 
 impl Differential {
-    /// Of leaves with these derivatives; those of all others are zero.
+    /// Takes the derivatives of some leaves; those of all others are zero.
     pub fn new(leaves: Leaves) -> Self {
         Differential {
             leaves,
@@ -57,7 +57,7 @@ impl Differential {
         }
     }
 
-    /// By one leaf.
+    /// The derivative by one leaf.
     pub fn by(graph: &mut Graph, leaf: Symbol) -> Self {
         Self::new(Leaves::from([(leaf, graph.constant(1.0))]))
     }
@@ -67,12 +67,12 @@ impl Differential {
         self.leaves.insert(leaf, derivative);
     }
 
-    /// The derivative of a leaf, if it has one.
+    /// The derivative of a leaf; `None` if it is zero.
     pub fn leaf(&self, leaf: Symbol) -> Option<Expr> {
         self.leaves.get(&leaf).copied()
     }
 
-    /// The leaves that have one.
+    /// The leaves whose derivative is not zero.
     pub fn leaves(&self) -> impl Iterator<Item = Symbol> {
         self.leaves.keys().copied()
     }
@@ -87,7 +87,8 @@ impl Differential {
         derivative
     }
 
-    /// The rule of each operation; `e` is its value, so that quotients and functions share it.
+    /// The differentiation rule of each operation. `e` is the operation itself, whose value the derivatives of
+    /// quotients and functions use.
     fn rule(&mut self, g: &mut Graph, e: Expr) -> Expr {
         match g.node(e) {
             Node::Constant(_) => g.constant(0.0),
@@ -149,7 +150,7 @@ impl Differential {
         }
     }
 
-    /// `(da - (a/b) db) / b`: the quotient itself is shared, and so is its divisor.
+    /// `(da - (a/b) db) / b`, which shares the quotient and its divisor.
     fn quotient(&mut self, g: &mut Graph, e: Expr, a: Expr, b: Expr) -> Expr {
         let da = self.of(g, a);
         if let (Node::Powi(base, n), Some(0.0)) = (g.node(b), g.as_constant(da)) {

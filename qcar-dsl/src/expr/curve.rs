@@ -6,16 +6,16 @@
 
 use super::{Expr, Graph};
 
-/// Points with the slopes there; `T` is what a value is: an expression, or where it is found.
+/// Points with the slopes there. `T` is the type of a value: an expression, or the position where a program stores it.
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
 pub struct Curve<T> {
     /// The abscissae by their bits, so that they can be hashed; strictly increasing, two at least.
     knots: Vec<u64>,
     /// The ordinates.
     pub values: Vec<T>,
-    /// dy/dx there.
+    /// dy/dx at the points.
     pub slopes: Vec<T>,
-    /// True where the slopes are those that the ordinates give, false for a derivative of such a curve.
+    /// True if the slopes follow from the ordinates, false for a derivative of such a curve.
     pub monotone: bool,
 }
 
@@ -40,7 +40,8 @@ impl<T> Curve<T> {
         }
     }
 
-    /// The derivative of an order from 0 to 3 at `x`. At a knot, those above the first are of the piece above it.
+    /// The derivative at `x`, of an order from 0 to 3. At a knot, derivatives above the first are those of the piece
+    /// above it.
     pub fn at(&self, order: u8, x: f64, number: impl Fn(&T) -> f64) -> f64 {
         let knot = |place: usize| f64::from_bits(self.knots[place]);
         let (value, slope) = (|place| number(&self.values[place]), |place| number(&self.slopes[place]));
@@ -86,7 +87,7 @@ impl Curve<Expr> {
     }
 }
 
-/// What is between two points.
+/// The interval between two points.
 #[derive(Clone, Copy)]
 struct Piece {
     secant: Expr,
@@ -111,7 +112,7 @@ fn slopes(g: &mut Graph, pieces: &[Piece]) -> Vec<Expr> {
     slopes
 }
 
-/// The weighted harmonic mean of the secants on both sides; 0 where one rises and the other does not.
+/// The weighted harmonic mean of the secants on both sides; 0 if their signs differ.
 fn inner_slope(g: &mut Graph, before: Piece, after: Piece) -> Expr {
     let (of_before, of_after) = (before.width + 2.0 * after.width, 2.0 * before.width + after.width);
     let product = g.of(before.secant * after.secant);
@@ -121,8 +122,8 @@ fn inner_slope(g: &mut Graph, before: Piece, after: Piece) -> Expr {
     g.select(product, mean, zero)
 }
 
-/// The slope of the parabola through the last three points; 0 where the secant has another sign, and at most three
-/// times the secant where the curve turns beyond it.
+/// The slope of the parabola through the last three points: 0 if the last secant has another sign, and at most three
+/// times this secant if the next one has another sign.
 fn end_slope(g: &mut Graph, own: Piece, next: Piece) -> Expr {
     let share = own.width / (own.width + next.width);
     let parabola = g.of((1.0 + share) * own.secant - share * next.secant);

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::{Curve, Expr, Graph, Node, Symbol};
 use crate::hash::{HashMap, HashSet};
 
-/// Something for each of several leaves.
+/// An expression for each of several leaves.
 pub type Leaves = BTreeMap<Symbol, Expr>;
 
 impl Graph {
@@ -63,7 +63,7 @@ impl Graph {
         found
     }
 
-    /// What an expression is worth when its leaves are.
+    /// The value of an expression for given values of its leaves.
     pub fn evaluate(&self, e: Expr, leaf: &impl Fn(Symbol) -> f64) -> f64 {
         let value = |a| self.evaluate(a, leaf);
         match self.node(e) {
@@ -85,7 +85,7 @@ impl Graph {
     }
 }
 
-/// Leaves replaced by expressions, once: what comes in for a leaf is left as it is.
+/// Replaces leaves by expressions, once: leaves in the replacements stay.
 #[derive(Clone, Debug)]
 pub struct Substitution {
     leaves: Leaves,
@@ -93,7 +93,7 @@ pub struct Substitution {
 }
 
 impl Substitution {
-    /// Of these leaves.
+    /// Replaces these leaves.
     pub fn new(leaves: Leaves) -> Self {
         Substitution {
             leaves,
@@ -101,7 +101,7 @@ impl Substitution {
         }
     }
 
-    /// Definitions, each in terms of earlier ones, so that what comes in for a leaf is free of all of them.
+    /// Substitutes definitions, each of which may use earlier ones. The replacements contain no defined leaf.
     pub fn of_definitions(graph: &mut Graph, definitions: &[(Symbol, Expr)]) -> Self {
         let mut substitution = Self::new(Leaves::new());
         for &(leaf, definition) in definitions {

@@ -1,12 +1,12 @@
-//! One member of a family as a file of its own: options taken, and the elements that it uses. It reads back as the same
-//! model.
+//! One member of a family as a file of its own: its options are chosen, and the elements that it uses are included. The
+//! file gives the same model again.
 
 use std::collections::BTreeSet;
 
 use crate::front::resolve::options::Member;
 use crate::front::syntax::{Axle, AxleKind, Element, File, Item, LawStatement, Statement};
 
-/// The text of an axle whose options are taken.
+/// The text of an axle whose options are chosen.
 pub fn canonical(axle: &Axle, member: &Member, elements: &[&Element]) -> String {
     let mut used = BTreeSet::new();
     member

@@ -1,4 +1,5 @@
-//! Text to the graph of a model: read as a tree, its options taken, its elements expanded, its names resolved.
+//! From text to the graph of a model: the text is parsed into a tree, options are chosen, elements expanded and names
+//! resolved.
 
 pub mod syntax;
 // From text to the syntax tree.

@@ -1,26 +1,27 @@
 //! The syntax tree: what a model file says, statement by statement.
 //!
-//! Every part is public and may be built or changed by a program: a patch adds statements to a body or terms to a link.
-//! A made-up part has the default [`Span`]. Two trees are equal when they say the same, wherever it stands.
+//! Every part is public, so that a program can build or change it: a patch adds statements to a body or terms to a
+//! link. A part that comes from no file has the default [`Span`]. Two trees are equal if their content is equal;
+//! positions do not count.
 
 use crate::source::Span;
 
-// What changes a model.
+// Effects, which change a model.
 mod effect;
 
 pub use effect::{Change, Effect, EffectParameter, Form, Pattern, PlaceKind, Role, VanishesAt};
 
-/// A name, or a word that chooses something.
+/// A name, or a word that selects a value.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Name {
     /// As written.
     pub text: String,
-    /// Where.
+    /// Its position.
     pub span: Span,
 }
 
 impl Name {
-    /// A name that stands in no file.
+    /// A name that comes from no file.
     pub fn new(text: impl Into<String>) -> Name {
         Name {
             text: text.into(),
@@ -36,7 +37,7 @@ pub struct File {
     pub items: Vec<Item>,
 }
 
-/// What stands at the outermost level of a file.
+/// An item at the outermost level of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Item {
     /// A model, or a family of models.
@@ -60,7 +61,7 @@ pub struct Axle {
     pub body: Vec<Statement>,
 }
 
-/// How a model comes about.
+/// How a model is declared.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AxleKind {
     /// `axle NAME { … }`
@@ -74,9 +75,9 @@ pub enum AxleKind {
 /// The path of a file, as written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Path {
-    /// Relative to the file that says it.
+    /// Relative to the file that contains it.
     pub text: String,
-    /// Where.
+    /// Its position.
     pub span: Span,
 }
 
@@ -127,7 +128,7 @@ pub enum Statement {
 }
 
 impl Statement {
-    /// What a statement declares, if it does.
+    /// The name that a statement declares, if any.
     pub fn name(&self) -> Option<&Name> {
         match self {
             Statement::Option(choice) => Some(&choice.name),
@@ -149,22 +150,22 @@ impl Statement {
 pub struct Choice {
     /// The name.
     pub name: Name,
-    /// What it may be.
+    /// Its possible values.
     pub values: Vec<Name>,
-    /// What it is unless chosen; without one, every axle chooses.
+    /// The value if an axle does not choose one. Without a default, every axle must choose.
     pub default: Option<Name>,
     /// The sentence; may be empty.
     pub doc: String,
 }
 
-/// What options must fulfil together.
+/// A condition that the chosen options must fulfil.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Requirement {
-    /// Where the word `require` stands.
+    /// Position of the word `require`.
     pub span: Span,
-    /// Must hold.
+    /// The condition.
     pub condition: Logic<OptionTest>,
-    /// Says why.
+    /// The reason.
     pub message: String,
 }
 
@@ -205,9 +206,9 @@ pub struct OptionTest {
 /// `if … { … } else if … { … } else { … }` around statements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct If<Part> {
-    /// Conditions with what holds under them; the first that is true is taken.
+    /// Conditions with their parts; the first one that is true is chosen.
     pub branches: Vec<(Logic<OptionTest>, Vec<Part>)>,
-    /// Taken where no condition is true.
+    /// Chosen if no condition is true.
     pub otherwise: Vec<Part>,
 }
 
@@ -222,7 +223,7 @@ pub struct Parameter {
     pub name: Name,
     /// The declared unit.
     pub unit: UnitText,
-    /// What it is unless given.
+    /// The value if none is given.
     pub default: Option<ParameterDefault>,
     /// Lower and upper bound.
     pub range: Option<(Number, Number)>,
@@ -230,7 +231,7 @@ pub struct Parameter {
     pub doc: String,
 }
 
-/// What a parameter is unless given.
+/// The default of a parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ParameterDefault {
     /// A value.
@@ -242,18 +243,18 @@ pub enum ParameterDefault {
 /// A number as written, with its unit where it has one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Number {
-    /// The digits, with a leading `-` where the number stands for itself, as in a range.
+    /// The digits, with a leading `-` for a negative bound of a range. In an expression, the sign is an operator.
     pub digits: String,
     /// Their value.
     pub value: f64,
     /// Empty for a plain number.
     pub unit: UnitText,
-    /// Where.
+    /// Its position.
     pub span: Span,
 }
 
 impl Number {
-    /// A number that stands in no file.
+    /// A number that comes from no file.
     pub fn new(value: f64) -> Number {
         Number {
             digits: format!("{value:?}"),
@@ -269,7 +270,7 @@ impl Number {
 pub struct UnitText {
     /// Positive exponents first. Empty for the unit `1`, and for a number without a unit.
     pub factors: Vec<UnitFactor>,
-    /// Where.
+    /// Its position.
     pub span: Span,
 }
 
@@ -278,9 +279,9 @@ pub struct UnitText {
 pub struct UnitFactor {
     /// For example `kN`.
     pub symbol: Name,
-    /// Above the fraction bar of the exponent; negative for what stands in the denominator.
+    /// Numerator of the exponent; negative if the symbol is in the denominator of the unit.
     pub numerator: i32,
-    /// Below the fraction bar of the exponent, positive.
+    /// Denominator of the exponent, positive.
     pub denominator: i32,
 }
 
@@ -295,7 +296,7 @@ pub struct Let {
     pub doc: String,
 }
 
-/// What moves along one direction.
+/// The statements of one direction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Direction {
     /// For example `z`.
@@ -372,10 +373,10 @@ pub enum LawStatement {
     If(If<LawStatement>),
 }
 
-/// An element put into a law.
+/// The use of an element in a law.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ElementUse {
-    /// The name of this use, which its states are prefixed with; the element's own unless given.
+    /// The label of this use, which prefixes the names of its states; without one, the name of the element.
     pub label: Option<Name>,
     /// Which element.
     pub element: Name,
@@ -384,7 +385,7 @@ pub struct ElementUse {
 }
 
 impl ElementUse {
-    /// What the states of this use are prefixed with.
+    /// The prefix of the states of this use.
     pub fn label(&self) -> &Name {
         self.label.as_ref().unwrap_or(&self.element)
     }
@@ -418,13 +419,13 @@ impl std::fmt::Display for Dotted {
 /// An expression.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expression {
-    /// What it is.
+    /// Its kind.
     pub kind: ExpressionKind,
-    /// Where.
+    /// Its position.
     pub span: Span,
 }
 
-/// What an expression is.
+/// The kind of an expression.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ExpressionKind {
     /// `40 mm`
@@ -433,7 +434,7 @@ pub enum ExpressionKind {
     Name(Dotted),
     /// `-a`
     Negative(Box<Expression>),
-    /// `a + b` and its like
+    /// `a + b` and the other operators
     Binary(Operator, Box<Expression>, Box<Expression>),
     /// `f(a, …)`
     Call(Name, Vec<Expression>),
@@ -446,7 +447,7 @@ pub enum ExpressionKind {
 /// A curve through points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// Where on the curve.
+    /// The abscissa at which the curve is evaluated.
     pub x: Expression,
     /// The abscissae of the points.
     pub knots: List,
@@ -474,7 +475,7 @@ pub enum Operator {
     Power,
 }
 
-/// `a < b` and its like
+/// `a < b` and the other comparisons
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     /// On the left.

@@ -1,10 +1,10 @@
-//! The changes of an effect, made to the tree of a model.
+//! Applies the changes of an effect to the tree of a model.
 
-use super::base::{Base, rolling};
 use super::bind::Bindings;
+use super::model_tree::{ModelTree, rolling};
 use super::rewrite::{self, binary, named};
 use super::terms::is_term;
-use super::{Made, Signal, SignalChange, refused};
+use super::{PatchResult, Signal, SignalChange, refused};
 use crate::diagnostic::effects;
 use crate::front::syntax::{
     Change, Dotted, EffectParameter, Expression, ExpressionKind, LawStatement, Let, Link, Name, Operator, Parameter,
@@ -12,19 +12,19 @@ use crate::front::syntax::{
 };
 use crate::source::Span;
 
-/// A model under change.
+/// A model to which changes are applied.
 pub struct Patching<'a> {
     bindings: Bindings<'a>,
     /// The model so far.
-    pub tree: Base,
-    /// The parameters that were met, with the name that they have in the model.
+    pub tree: ModelTree,
+    /// The effect's parameters so far, with their names in the model.
     pub parameters: Vec<(&'a EffectParameter, String)>,
-    /// What is wrong with signals, not with the model.
+    /// Errors of sensors, which do not change the model.
     pub signals: Vec<SignalChange>,
 }
 
-/// Makes all changes of an effect. Starts and ranges of its parameters are left open.
-pub fn apply<'a>(mut bindings: Bindings<'a>) -> Made<Patching<'a>> {
+/// Applies all changes of an effect. Starts and ranges of its parameters are not set.
+pub fn apply<'a>(mut bindings: Bindings<'a>) -> PatchResult<Patching<'a>> {
     let all = changes(&bindings);
     for (_, change) in &all {
         if let Change::Parameter(parameter) = change {
@@ -43,7 +43,7 @@ pub fn apply<'a>(mut bindings: Bindings<'a>) -> Made<Patching<'a>> {
     Ok(patching)
 }
 
-/// Every change with the direction that it is made in.
+/// Every change with its direction.
 fn changes<'a>(bindings: &Bindings<'a>) -> Vec<(String, &'a Change)> {
     let mut all = Vec::new();
     for change in bindings.effect.changes() {
@@ -62,8 +62,8 @@ fn changes<'a>(bindings: &Bindings<'a>) -> Vec<(String, &'a Change)> {
     all
 }
 
-/// A parameter whose name the model has given to something else is called after its place.
-fn rename(bindings: &mut Bindings, parameter: &EffectParameter) -> Made<()> {
+/// Renames a parameter whose name the model already uses: the name of the place is added.
+fn rename(bindings: &mut Bindings, parameter: &EffectParameter) -> PatchResult<()> {
     let name = &parameter.name;
     let same = match bindings.base.global(&name.text) {
         None => return Ok(()),
@@ -81,7 +81,7 @@ fn rename(bindings: &mut Bindings, parameter: &EffectParameter) -> Made<()> {
 }
 
 impl<'a> Patching<'a> {
-    fn change(&mut self, direction: &str, change: &'a Change) -> Made<()> {
+    fn change(&mut self, direction: &str, change: &'a Change) -> PatchResult<()> {
         match change {
             Change::Parameter(parameter) => self.parameter(parameter),
             Change::Declare(statement) => return self.declare(direction, statement),
@@ -110,7 +110,7 @@ impl<'a> Patching<'a> {
         self.parameters.push((parameter, name));
     }
 
-    /// Declares the parameters with their starts and ranges, where the model's equations have them.
+    /// Declares the parameters that the model's equations use, with their starts and ranges.
     pub fn declare_parameters(&mut self, declared: Vec<Parameter>) {
         let sensed = |p: &Parameter| self.signals.iter().any(|signal| signal.parameter == p.name.text);
         let declared: Vec<Statement> = declared
@@ -123,7 +123,7 @@ impl<'a> Patching<'a> {
         body.splice(place..place, declared);
     }
 
-    fn declare(&mut self, direction: &str, statement: &Statement) -> Made<()> {
+    fn declare(&mut self, direction: &str, statement: &Statement) -> PatchResult<()> {
         let bound = self.bound(direction, statement)?;
         if let Some(name) = statement.name() {
             let global = matches!(statement, Statement::Let(_)) && self.tree.global(&name.text).is_some();
@@ -146,7 +146,7 @@ impl<'a> Patching<'a> {
         Ok(())
     }
 
-    fn bound(&self, direction: &str, statement: &Statement) -> Made<Statement> {
+    fn bound(&self, direction: &str, statement: &Statement) -> PatchResult<Statement> {
         let bindings = &self.bindings;
         let mut value = |e: &Expression| bindings.expression(e, direction);
         Ok(match statement {
@@ -175,8 +175,8 @@ impl<'a> Patching<'a> {
         })
     }
 
-    /// What a point of the effect stands for: a mass, an end of the place, or a combination of them.
-    fn end(&self, target: &Expression, direction: &str) -> Made<Expression> {
+    /// The expression of a point of the effect: a mass, an end of the place, or a combination of them.
+    fn end(&self, target: &Expression, direction: &str) -> PatchResult<Expression> {
         let ExpressionKind::Name(name) = &target.kind else {
             return self.bindings.expression(target, direction);
         };
@@ -199,7 +199,7 @@ impl<'a> Patching<'a> {
         }
     }
 
-    fn already(&self, name: &Name) -> super::Refused {
+    fn already(&self, name: &Name) -> super::Refusal {
         refused(effects::already_in_model(
             name.span,
             &name.text,
@@ -207,7 +207,7 @@ impl<'a> Patching<'a> {
         ))
     }
 
-    fn take(&mut self, direction: &str, part: &Expression, mass: &Dotted) -> Made<()> {
+    fn take(&mut self, direction: &str, part: &Expression, mass: &Dotted) -> PatchResult<()> {
         let part = self.bindings.expression(part, direction)?;
         let name = self.bindings.point(mass, direction)?;
         match self.tree.inertia_mut(direction, &name) {
@@ -217,7 +217,7 @@ impl<'a> Patching<'a> {
         Ok(())
     }
 
-    fn add(&mut self, direction: &str, name: &Name, law: &[LawStatement]) -> Made<()> {
+    fn add(&mut self, direction: &str, name: &Name, law: &[LawStatement]) -> PatchResult<()> {
         let (direction, link) = self.meant_link(direction, name)?;
         let law = self.bindings.law(law, &link, &direction)?;
         if let Some(link) = self.tree.link_mut(&direction, &link) {
@@ -233,15 +233,15 @@ impl<'a> Patching<'a> {
         Ok(())
     }
 
-    fn replace_term(&mut self, direction: &str, (term, name): (&Name, &Name), law: &[LawStatement]) -> Made<()> {
+    fn replace_term(&mut self, direction: &str, (term, name): (&Name, &Name), law: &[LawStatement]) -> PatchResult<()> {
         let (home, link) = self.meant_link(direction, name)?;
         let law = self.bindings.law(law, &link, &home)?;
         let Some(link) = self.tree.link_mut(&home, &link) else {
             return Ok(());
         };
         if !link.body.iter().any(|statement| is_term(statement, &term.text)) {
-            let said = format!("{}.{}", name.text, term.text);
-            return Err(refused(effects::place_lacks(term.span, &said, &link.name.text)));
+            let expected = format!("{}.{}", name.text, term.text);
+            return Err(refused(effects::place_lacks(term.span, &expected, &link.name.text)));
         }
         link.body.retain(|statement| !is_term(statement, &term.text));
         if let Some(body) = rolling_mut(&mut link.body) {
@@ -251,8 +251,8 @@ impl<'a> Patching<'a> {
         Ok(())
     }
 
-    /// The link that a name means, with its direction: the place's own where it is the variable.
-    fn meant_link(&self, direction: &str, name: &Name) -> Made<(String, String)> {
+    /// The direction and name of the link that a name means; for the variable, those of the place.
+    fn meant_link(&self, direction: &str, name: &Name) -> PatchResult<(String, String)> {
         let link = &self.bindings.name_along(name, direction);
         let home = if *link == self.bindings.place.name {
             &self.bindings.place.direction
@@ -265,7 +265,13 @@ impl<'a> Patching<'a> {
         }
     }
 
-    fn replace_point(&mut self, direction: &str, point: &Dotted, of: Option<&Name>, by: &Expression) -> Made<()> {
+    fn replace_point(
+        &mut self,
+        direction: &str,
+        point: &Dotted,
+        of: Option<&Name>,
+        by: &Expression,
+    ) -> PatchResult<()> {
         let (old, new) = (
             self.bindings.point(point, direction)?,
             self.bindings.expression(by, direction)?,
@@ -278,7 +284,7 @@ impl<'a> Patching<'a> {
         let declared = self.bindings.base.direction(&home);
         let known: Vec<String> = declared
             .into_iter()
-            .flat_map(super::base::links)
+            .flat_map(super::model_tree::links)
             .map(|link| link.name.text.clone())
             .collect();
         let Some(home) = self.tree.direction_mut(&home) else {
@@ -286,7 +292,7 @@ impl<'a> Patching<'a> {
         };
         for statement in &mut home.body {
             let Statement::Link(link) = statement else { continue };
-            // Links of the effect itself say what they mean.
+            // Links that the effect itself declares keep their points.
             let is_meant = only.as_ref().is_none_or(|(_, only)| link.name.text == *only);
             if is_meant && known.contains(&link.name.text) {
                 link.stretch = with_point(&link.stretch, &old, &new, only.is_some());
@@ -295,14 +301,14 @@ impl<'a> Patching<'a> {
         Ok(())
     }
 
-    /// Linear terms have no `s` of their own, so that they stay as they are.
+    /// Replaces the stretch in the law of a link. Linear terms do not contain `s`, so they do not change.
     fn replace_stretch(
         &mut self,
         direction: &str,
         of: &Name,
         by: &Expression,
         rolling: Option<&Expression>,
-    ) -> Made<()> {
+    ) -> PatchResult<()> {
         let (home, link) = self.meant_link(direction, of)?;
         let by = self.bindings.expression(by, &home)?;
         let rolling = rolling.map(|by| self.bindings.expression(by, &home)).transpose()?;
@@ -314,8 +320,8 @@ impl<'a> Patching<'a> {
             .iter()
             .any(|statement| matches!(statement, LawStatement::Use(_)))
         {
-            let said = "a law without elements";
-            return Err(refused(effects::place_lacks(of.span, said, &link.name.text)));
+            let expected = "a law without elements";
+            return Err(refused(effects::place_lacks(of.span, expected, &link.name.text)));
         }
         for statement in &mut link.body {
             let by = match statement {
@@ -329,7 +335,7 @@ impl<'a> Patching<'a> {
         Ok(())
     }
 
-    fn remove(&mut self, direction: &str, name: &Name) -> Made<()> {
+    fn remove(&mut self, direction: &str, name: &Name) -> PatchResult<()> {
         let (home, link) = self.meant_link(direction, name)?;
         if let Some(home) = self.tree.direction_mut(&home) {
             home.body
@@ -338,8 +344,8 @@ impl<'a> Patching<'a> {
         Ok(())
     }
 
-    /// A sensor on a mass, or at an end of it, is a point, and seen where the model says what is to be seen.
-    fn place_sensor(&mut self, direction: &str, end: Option<&Name>, of: &Dotted, at: &Expression) -> Made<()> {
+    /// Adds the point at which a sensor is mounted. If the model declares outputs, its acceleration becomes one.
+    fn place_sensor(&mut self, direction: &str, end: Option<&Name>, of: &Dotted, at: &Expression) -> PatchResult<()> {
         let mass = self.bindings.point(of, direction)?;
         let mass = self.bindings.base.pointed_at(direction, &mass);
         if self.bindings.base.coordinate(direction, &mass).is_none() {
@@ -359,7 +365,7 @@ impl<'a> Patching<'a> {
         self.declare(direction, &Statement::Output(None, acceleration))
     }
 
-    /// A force input acts by a factor on what it acts on.
+    /// Multiplies a force input by a factor.
     fn scale_force(&mut self, direction: &str, place: &Name, by: &Name) {
         let name = self.bindings.name(place).to_string();
         let by = self.bindings.renamed.get(&by.text).unwrap_or(&by.text).clone();
@@ -382,13 +388,13 @@ impl<'a> Patching<'a> {
         });
     }
 
-    /// What an expression of the effect is in the names of the model.
-    pub fn meaning(&self, e: &Expression) -> Made<Expression> {
+    /// An expression of the effect in the names of the model.
+    pub fn meaning(&self, e: &Expression) -> PatchResult<Expression> {
         self.bindings.expression(e, &self.bindings.place.direction)
     }
 }
 
-/// A stretch with another expression in place of a point: the first time that it stands there, or always.
+/// A stretch in which an expression replaces a point: only its first occurrence if `once`, else all.
 fn with_point(stretch: &Expression, old: &str, new: &Expression, once: bool) -> Expression {
     let mut left = if once { 1 } else { usize::MAX };
     let mut rename = |name: &Dotted| {
@@ -400,7 +406,7 @@ fn with_point(stretch: &Expression, old: &str, new: &Expression, once: bool) -> 
     changed
 }
 
-/// A statement of a law with something else for its stretch.
+/// A statement of a law in which an expression replaces the stretch.
 fn in_other_stretch(statement: &LawStatement, by: &Expression) -> LawStatement {
     let mut rename = |name: &Dotted| {
         let found = name.to_string() == "s";
@@ -411,7 +417,7 @@ fn in_other_stretch(statement: &LawStatement, by: &Expression) -> LawStatement {
     changed.pop().unwrap_or_else(|| statement.clone())
 }
 
-/// Adds statements to a law; while a tyre rolls, the forces that they say for rolling, or else the same.
+/// Adds statements to a law. Its `rolling` block gets their forces for rolling, or the same forces if they have none.
 fn extend(body: &mut Vec<LawStatement>, law: Vec<LawStatement>) {
     let own_rolling = rolling(&law).cloned();
     let (_, standing): (Vec<_>, Vec<_>) = law.into_iter().partition(|s| matches!(s, LawStatement::Rolling(..)));
@@ -464,7 +470,7 @@ fn state_span(statement: &LawStatement) -> Span {
     }
 }
 
-/// The place after the last statement of a kind; in front of the first direction where there is none.
+/// The position after the last statement of a kind; before the first direction if there is none.
 fn after_last(body: &[Statement], kind: impl Fn(&Statement) -> bool) -> usize {
     let last = body.iter().rposition(kind).map(|place| place + 1);
     let first_direction = || body.iter().position(|s| matches!(s, Statement::Direction(_)));

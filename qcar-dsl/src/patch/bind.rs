@@ -1,21 +1,21 @@
-//! What the names of an effect mean at a place: its variable, the ends and coefficients of links, its parameters.
+//! Meaning of the names of an effect at a place: its variable, the ends and coefficients of links, its parameters.
 
 use std::collections::BTreeMap;
 
-use super::base::{Base, links};
+use super::model_tree::{ModelTree, links};
 use super::place::Place;
 use super::rewrite::{self, binary, named};
 use super::roles::Roles;
 use super::scale::Scale;
 use super::stretch::{lever, lower, upper};
 use super::terms::is_term;
-use super::{Made, refused};
+use super::{PatchResult, refused};
 use crate::diagnostic::effects;
 use crate::front::syntax::{
     CoordinateKind, Dotted, Effect, Expression, ExpressionKind, LawStatement, Link, Name, Number, Operator, PlaceKind,
 };
 
-/// What a name may ask of a link or mass after a dot.
+/// Properties of a link or mass, as written after a dot.
 const FIELDS: [&str; 12] = [
     "upper",
     "lower",
@@ -31,24 +31,24 @@ const FIELDS: [&str; 12] = [
     "acceleration_scale",
 ];
 
-/// An effect at a place of a model, before anything is changed.
+/// An effect at a place of a model, before any change.
 pub struct Bindings<'a> {
     /// The model.
-    pub base: &'a Base,
-    /// What its parts do.
+    pub base: &'a ModelTree,
+    /// The roles of its parts.
     pub roles: &'a Roles,
     /// The effect.
     pub effect: &'a Effect,
     /// The place.
     pub place: &'a Place,
-    /// Parameters whose names the model has given to something else.
+    /// New names of parameters whose names the model already uses.
     pub renamed: BTreeMap<String, String>,
     lever: Option<Expression>,
 }
 
 impl<'a> Bindings<'a> {
     /// Binds the names of an effect at a place.
-    pub fn new(base: &'a Base, roles: &'a Roles, effect: &'a Effect, place: &'a Place) -> Bindings<'a> {
+    pub fn new(base: &'a ModelTree, roles: &'a Roles, effect: &'a Effect, place: &'a Place) -> Bindings<'a> {
         let link = base.link(&place.direction, &place.name);
         let lever = link.zip(effect.pattern.seen_from.as_ref());
         let lever = lever.and_then(|(link, point)| lever_of(base, roles, place, link, &point.text));
@@ -62,7 +62,7 @@ impl<'a> Bindings<'a> {
         }
     }
 
-    /// The name in the model of a name in the effect: the variable is the place.
+    /// The name in the model for a name in the effect; the variable means the place.
     pub fn name<'n>(&'n self, name: &'n Name) -> &'n str {
         if name.text == self.effect.pattern.variable.text {
             &self.place.name
@@ -71,7 +71,7 @@ impl<'a> Bindings<'a> {
         }
     }
 
-    /// The same along a direction: a role that no part of the model has for its name is the part that does it.
+    /// The same along a direction. A word that is a role, and not a name in the model, means the part with this role.
     pub fn name_along(&self, name: &Name, direction: &str) -> String {
         let own = self.name(name);
         let meant = self.roles.meant(self.base, direction, own);
@@ -79,11 +79,11 @@ impl<'a> Bindings<'a> {
     }
 
     /// An expression in the names of the model.
-    pub fn expression(&self, e: &Expression, direction: &str) -> Made<Expression> {
+    pub fn expression(&self, e: &Expression, direction: &str) -> PatchResult<Expression> {
         rewrite::expression(e, &mut |name| self.meaning(name, direction))
     }
 
-    fn meaning(&self, name: &Dotted, direction: &str) -> Made<Option<Expression>> {
+    fn meaning(&self, name: &Dotted, direction: &str) -> PatchResult<Option<Expression>> {
         match name.names.as_slice() {
             [own] => {
                 let renamed = self.renamed.get(&own.text).cloned();
@@ -95,8 +95,8 @@ impl<'a> Bindings<'a> {
         }
     }
 
-    /// The point that is meant where a point must stand: `body`, `m` or `l.upper`.
-    pub fn point(&self, name: &Dotted, direction: &str) -> Made<String> {
+    /// The name of a point: `body`, `m` or `l.upper`.
+    pub fn point(&self, name: &Dotted, direction: &str) -> PatchResult<String> {
         let meant = self.meaning(name, direction)?;
         Ok(match meant.map(|meant| meant.kind) {
             Some(ExpressionKind::Name(name)) => name.to_string(),
@@ -104,9 +104,9 @@ impl<'a> Bindings<'a> {
         })
     }
 
-    fn field(&self, owner: &Name, field: &Name, direction: &str) -> Made<Expression> {
+    fn field(&self, owner: &Name, field: &Name, direction: &str) -> PatchResult<Expression> {
         let name = &self.name_along(owner, direction);
-        // What the place is, it is in its own direction: other directions have points of the same names.
+        // The place belongs to its own direction; other directions may have points of the same names.
         let home = if *name == self.place.name {
             &self.place.direction
         } else {
@@ -135,7 +135,8 @@ impl<'a> Bindings<'a> {
         })
     }
 
-    /// A reference value: of the place, as it is seen from the point of the pattern; the force of a mass is its inertia's.
+    /// A reference value. That of the place is per travel of the pattern's point; the force of a mass is its inertia
+    /// force.
     fn scale(&self, direction: &str, name: &str, scale: Scale) -> Expression {
         if let (Scale::Force, Some(mass)) = (scale, self.mass(direction, name)) {
             return binary(
@@ -153,7 +154,7 @@ impl<'a> Bindings<'a> {
         }
     }
 
-    /// The stretch of a link and of the mount that its upper end stands on.
+    /// The stretch of a link in series with the mount on its upper end.
     fn strut(&self, direction: &str, link: &Link) -> Option<Expression> {
         let end = |end: Option<String>| end.map(|end| self.base.pointed_at(direction, &end));
         let top = end(upper(self.base, direction, link))?;
@@ -176,7 +177,7 @@ impl<'a> Bindings<'a> {
         }
     }
 
-    /// The sum of a link's linear terms of a kind; at the place as it is seen from the point of the pattern.
+    /// The sum of a link's linear terms of a kind; that of the place is per travel of the pattern's point.
     fn coefficient(&self, link: &Link, kind: &str) -> Option<Expression> {
         let terms = link.body.iter().filter(|statement| is_term(statement, kind));
         let values = terms.filter_map(|term| match term {
@@ -192,7 +193,7 @@ impl<'a> Bindings<'a> {
         }
     }
 
-    /// Whether a stretch is that of the place with others added: such a link is seen through the same lever.
+    /// True if a stretch contains that of the place; such a link has the same motion ratio.
     pub fn asks_for_stretch(&self, stretch: &Expression) -> bool {
         let mut found = false;
         rewrite::names_in(stretch, &mut |name| {
@@ -203,7 +204,7 @@ impl<'a> Bindings<'a> {
     }
 
     /// A law in the names of the model, its stretch and forces per travel of the link itself.
-    pub fn law(&self, body: &[LawStatement], link: &str, direction: &str) -> Made<Vec<LawStatement>> {
+    pub fn law(&self, body: &[LawStatement], link: &str, direction: &str) -> PatchResult<Vec<LawStatement>> {
         let own = rewrite::law(body, &mut |e| self.expression(e, direction))?;
         Ok(match (&self.lever, &self.effect.pattern.seen_from) {
             (Some(lever), Some(point)) if link == self.place.name => through_lever(own, lever, &point.text),
@@ -212,13 +213,13 @@ impl<'a> Bindings<'a> {
     }
 }
 
-fn lever_of(base: &Base, roles: &Roles, place: &Place, link: &Link, point: &str) -> Option<Expression> {
+fn lever_of(base: &ModelTree, roles: &Roles, place: &Place, link: &Link, point: &str) -> Option<Expression> {
     let meant = roles.meant(base, &place.direction, point);
     lever(base, &place.direction, link, meant.as_deref().unwrap_or(point))
 }
 
 impl Bindings<'_> {
-    /// Whether the place of the effect is in a direction: the mass, or the upper end of the link.
+    /// True if the place of the effect moves in a direction: the mass, or the upper end of the link.
     pub fn moves_along(&self, direction: &str) -> bool {
         let name = match self.effect.pattern.kind {
             PlaceKind::Link => {
@@ -232,7 +233,7 @@ impl Bindings<'_> {
     }
 }
 
-/// `k` where the coefficient is `k / r^2`, and `coefficient * r^2` otherwise.
+/// `k` if the coefficient is `k / r^2`, else `coefficient * r^2`.
 fn per_square(coefficient: Expression, lever: &Expression) -> Expression {
     let square = squared(lever);
     match coefficient.kind {
@@ -253,7 +254,7 @@ fn squared(lever: &Expression) -> Expression {
     )
 }
 
-/// A law that is said per travel of a point, as one per travel of the link: `s_wheel = s / r`, and forces divided by `r`.
+/// Converts a law per travel of a point to one per travel of the link: `s_wheel = s / r`, and forces divided by `r`.
 fn through_lever(law: Vec<LawStatement>, lever: &Expression, point: &str) -> Vec<LawStatement> {
     let mut lets = Vec::new();
     let mut body = in_travel_of_point(law, lever, point, &mut lets);

@@ -5,9 +5,9 @@ use crate::front::syntax::{Change, Effect, Expression, ExpressionKind, LawStatem
 /// A table in a law.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// What it is over: `s` or `v`, or another name of the law.
+    /// The argument: `s`, `v` or another name of the law.
     pub over: String,
-    /// The parameter that its abscissae are parts of; `None` where they are in the unit of what it is over.
+    /// The parameter that scales the abscissae; `None` if these are in the unit of the argument.
     pub scale: Option<String>,
     /// Abscissae and ordinates.
     pub points: Vec<(f64, Ordinate)>,
@@ -16,14 +16,14 @@ pub struct Curve {
 /// An ordinate of a curve.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Ordinate {
-    /// It is given.
+    /// A number, in SI.
     Number(f64),
-    /// It is the product of parameters of the effect, by their names there.
+    /// A product of parameters of the effect, by their names in the effect.
     Product(Vec<String>),
 }
 
 impl Curve {
-    /// True of a parameter that is its scale or a factor of a point.
+    /// True for a parameter that is its scale or a factor of a point.
     pub fn holds(&self, name: &String) -> bool {
         let is_factor =
             |(_, ordinate): &(f64, Ordinate)| matches!(ordinate, Ordinate::Product(names) if names.contains(name));
@@ -31,7 +31,7 @@ impl Curve {
     }
 }
 
-/// The curves of an effect in its usual form, in the order of its text; those of a tyre that rolls are left out.
+/// The curves of an effect in its usual form, in the order of its text, without those of a rolling tyre.
 pub fn curves(effect: &Effect) -> Vec<Curve> {
     let laws = effect.changes().flat_map(|change| match change {
         Change::Add(_, law) | Change::ReplaceTerm(_, _, law) => law.as_slice(),
@@ -62,7 +62,7 @@ fn tables(of: &Expression, each: &mut dyn FnMut(&Table)) {
     }
 }
 
-/// `None` where an abscissa is more than a number, or an ordinate more than a number or a product of names.
+/// `None` if an abscissa is not a number, or an ordinate is neither a number nor a product of names.
 fn curve(table: &Table) -> Option<Curve> {
     let (over, scale) = match &table.x.kind {
         ExpressionKind::Binary(Operator::Divide, of, by) => (of, Some(name(by)?)),
@@ -100,7 +100,7 @@ fn name(e: &Expression) -> Option<String> {
     }
 }
 
-/// In SI.
+/// The value of a number, in SI.
 fn number(e: &Expression) -> Option<f64> {
     match &e.kind {
         ExpressionKind::Number(number) => Some(number.value),

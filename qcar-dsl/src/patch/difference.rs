@@ -7,42 +7,42 @@ use crate::back::notation::Notation;
 use crate::check::Checked;
 use crate::front::print::one_line;
 use crate::front::syntax::Statement;
-use crate::patch::Base;
+use crate::patch::ModelTree;
 
-/// In what a model differs from another, under headings.
+/// The differences between two models, under headings.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
-    /// Parameters, derived quantities, masses, links, what is seen, equations. Parts without a change are left out.
+    /// Parameters, derived quantities, masses, links, outputs, equations. Parts without a change are left out.
     pub parts: Vec<Part>,
 }
 
-/// What changes under a heading.
+/// The differences under one heading.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Part {
     /// For example `links`.
     pub heading: &'static str,
-    /// First what changes or goes, in the order of the first model, then what comes, in that of the second.
-    pub changes: Vec<Changed>,
+    /// First changed and removed lines in the order of the first model, then added ones in that of the second.
+    pub changes: Vec<LineChange>,
 }
 
-/// Something that the models do not have in common.
+/// A line in which the models differ.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Changed {
+pub struct LineChange {
     /// Its name, `z.damper`; of an equation its left side.
     pub name: String,
-    /// In the first model.
+    /// Its text in the first model; `None` if only the second has it.
     pub before: Option<String>,
-    /// In the second model.
+    /// Its text in the second model; `None` if only the first has it.
     pub after: Option<String>,
 }
 
 /// Names with their lines.
 type Lines = Vec<(String, String)>;
 
-/// Whether a statement belongs to a part.
+/// True if a statement belongs to a part.
 type Belongs = fn(&Statement) -> bool;
 
-/// The parts of a text, with what belongs to them.
+/// The parts of a text, each with a test of which statements belong to it.
 const PARTS: [(&str, Belongs); 5] = [
     ("parameters", |statement| matches!(statement, Statement::Parameter(_))),
     ("derived quantities", |statement| matches!(statement, Statement::Let(_))),
@@ -55,9 +55,9 @@ const PARTS: [(&str, Belongs); 5] = [
     }),
 ];
 
-/// In what the second model differs from the first. What is zero by an option counts as absent.
+/// The differences of the second model from the first. Parts that an option sets to zero count as absent.
 pub fn difference(first: &Checked, second: &Checked) -> Difference {
-    let (before, after) = (Base::of(first), Base::of(second));
+    let (before, after) = (ModelTree::of(first), ModelTree::of(second));
     let texts = PARTS.map(|(heading, belongs)| Part {
         heading,
         changes: changes(&lines(&before, belongs), &lines(&after, belongs)),
@@ -72,13 +72,13 @@ pub fn difference(first: &Checked, second: &Checked) -> Difference {
     }
 }
 
-/// True where two models have the same equations, however their links are written.
+/// True if two models have the same equations of motion, however their links are written.
 pub fn moves_alike(first: &Checked, second: &Checked) -> bool {
     changes(&equations(first), &equations(second)).is_empty()
 }
 
-/// The statements of a kind, each with the direction that it stands in.
-fn lines(tree: &Base, belongs: Belongs) -> Lines {
+/// The statements of a kind, each with its direction.
+fn lines(tree: &ModelTree, belongs: Belongs) -> Lines {
     let outside = tree.axle.body.iter().map(|statement| (String::new(), statement));
     let inside = tree.directions().flat_map(|direction| {
         let home = format!("{}.", direction.name.text);
@@ -96,15 +96,15 @@ fn lines(tree: &Base, belongs: Belongs) -> Lines {
     named.collect()
 }
 
-fn changes(first: &Lines, second: &Lines) -> Vec<Changed> {
+fn changes(first: &Lines, second: &Lines) -> Vec<LineChange> {
     let find = |lines: &Lines, name: &str| lines.iter().find(|(own, _)| own == name).map(|(_, line)| line.clone());
-    let before = first.iter().map(|(name, line)| Changed {
+    let before = first.iter().map(|(name, line)| LineChange {
         name: name.clone(),
         before: Some(line.clone()),
         after: find(second, name),
     });
     let new = second.iter().filter(|(name, _)| find(first, name).is_none());
-    let after = new.map(|(name, line)| Changed {
+    let after = new.map(|(name, line)| LineChange {
         name: name.clone(),
         before: None,
         after: Some(line.clone()),

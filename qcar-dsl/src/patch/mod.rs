@@ -1,17 +1,16 @@
-//! Effects: patches of models, read from files, and made at the places where they apply.
+//! Effects: patches of models, read from files and applied at their places.
 //!
-//! A patch is a change of the syntax tree, so that the new model is a file that reads, and compiles, like any other.
-//! Everything that an effect says about the model is bound to the model as it was before: `l.damper` is the coefficient
-//! that stood there, and stays what it was when the term is replaced.
+//! A patch changes the syntax tree, so the new model is a file like any other. Expressions of an effect refer to the
+//! model before the patch: `l.damper` is the coefficient of the original damper, even if the term is replaced.
 
 // Syntax trees with names replaced.
 mod rewrite;
 // The syntax tree of the model that is patched.
-mod base;
+mod model_tree;
 // Values of expressions at the model's parameters.
-mod ask;
+mod query;
 // Outputs that show what every part of a model does.
-mod watch;
+mod all_outputs;
 // Amplitudes of travel and force at a place.
 mod scale;
 // The two ends of a link.
@@ -38,54 +37,54 @@ pub mod difference;
 
 use std::borrow::Cow;
 
-pub use ask::Values;
-pub(crate) use base::Base;
+pub use all_outputs::with_all_outputs;
 use bind::Bindings;
 pub use curve::{Curve, Ordinate};
+pub(crate) use model_tree::ModelTree;
 use place::Place;
 pub use qcar_model::ParameterRole;
+pub use query::Values;
 use roles::Roles;
 pub use scale::Scale;
-pub use watch::watched;
 
 use crate::check::Checked;
 use crate::check::check_text;
-use crate::derive::visible;
+use crate::derive::identifiability;
 use crate::diagnostic::{Diagnostic, Report, Severity, effects};
 use crate::front::syntax::{Effect, File, Item, Name};
 use crate::source::Source;
 
-/// Why something cannot be made.
-pub(crate) type Refused = Vec<Diagnostic>;
+/// The mistakes for which an effect is refused.
+pub(crate) type Refusal = Vec<Diagnostic>;
 
-/// Something, or why it cannot be made.
-pub(crate) type Made<Thing> = Result<Thing, Refused>;
+/// A result of patching, or the mistakes for which it is refused.
+pub(crate) type PatchResult<T> = Result<T, Refusal>;
 
-fn refused(mistake: Diagnostic) -> Refused {
+fn refused(mistake: Diagnostic) -> Refusal {
     vec![mistake]
 }
 
-/// An effect that was read from a file. Of several forms, the first is its usual one: that is what is applied.
+/// An effect that was read from a file. If it has several forms, the first one is the usual form, which is applied.
 #[derive(Clone, Debug)]
 pub struct Patch {
     effect: Effect,
     source: Source,
 }
 
-/// A model with an effect in it.
+/// A model with an effect.
 #[derive(Clone, Debug)]
 pub struct Patched {
     /// The effect.
     pub effect: String,
     /// The label of its place.
     pub place: String,
-    /// Which of its forms; `None` where it has only one.
+    /// The form that was applied; `None` if the effect has only one.
     pub form: Option<String>,
-    /// The model, checked; its name says the effect, `axle_c_with_coulomb_friction`.
+    /// The checked model; its name includes that of the effect, `axle_c_with_coulomb_friction`.
     pub model: Checked,
     /// The parameters of the effect, in the order of its file.
     pub parameters: Vec<NewParameter>,
-    /// What the effect does to measured signals; the equations know nothing of it.
+    /// Errors of measured signals, which do not appear in the equations.
     pub signals: Vec<SignalChange>,
     comments: Vec<String>,
 }
@@ -95,43 +94,43 @@ pub struct Patched {
 pub struct NewParameter {
     /// Its name in the model.
     pub name: String,
-    /// Its name in the effect: another one where the model had used that name.
+    /// Its name in the effect; different if the model already used that name.
     pub effect_name: String,
-    /// What people call its coherent SI unit.
+    /// The usual name of its coherent SI unit.
     pub unit: String,
-    /// Where a search begins, in SI.
+    /// Start of a search, in SI.
     pub start: f64,
-    /// What is plausible, in SI, lower below upper.
+    /// Plausible range in SI, lower below upper.
     pub range: (f64, f64),
-    /// Given, not to be estimated.
+    /// True if it is given, not estimated.
     pub known: bool,
-    /// The sentence.
+    /// The description.
     pub doc: String,
-    /// What it is to its effect.
+    /// Its role in the effect.
     pub role: ParameterRole,
-    /// False for a shared one that the model had already.
+    /// False for a shared parameter that the model already had.
     pub is_new: bool,
 }
 
-/// What is wrong with a measured signal.
+/// An error of a measured signal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SignalChange {
     /// The location of the sensor.
     pub location: String,
     /// Its axis.
     pub axis: String,
-    /// What is wrong.
+    /// The kind of error.
     pub kind: Signal,
-    /// The parameter that says how much.
+    /// The parameter that gives its size.
     pub parameter: String,
 }
 
-/// What may be wrong with a measured signal.
+/// Kinds of errors of a measured signal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Signal {
-    /// It comes late, by a parameter in s.
+    /// A delay, whose parameter is in s.
     Delay,
-    /// It is too large, by a factor.
+    /// A gain, whose parameter is a factor.
     Gain,
 }
 
@@ -139,7 +138,7 @@ impl Patch {
     /// Reads the file of an effect.
     ///
     /// # Errors
-    /// The report of every mistake that shows without a model.
+    /// Fails with the report of every mistake that can be found without a model.
     pub fn read(source: Source) -> Result<Patch, Report> {
         rules::effect_of(&source)
             .map(|effect| Patch {
@@ -152,17 +151,17 @@ impl Patch {
             })
     }
 
-    /// The effect as its file says it.
+    /// The syntax tree of the effect.
     pub fn effect(&self) -> &Effect {
         &self.effect
     }
 
-    /// The names of its forms, the usual one first; none where there is only one.
+    /// The names of its forms, the usual one first; empty if there is only one.
     pub fn forms(&self) -> impl Iterator<Item = &str> {
         self.effect.forms.iter().map(|form| form.name.text.as_str())
     }
 
-    /// The effect in one of its forms alone; `None` where it has no form of this name.
+    /// The effect with one of its forms only; `None` if it has no form of this name.
     pub fn in_form(&self, name: &str) -> Option<Patch> {
         let form = self.effect.forms.iter().find(|form| form.name.text == name)?;
         let mut patch = self.clone();
@@ -175,10 +174,10 @@ impl Patch {
         curve::curves(&self.effect)
     }
 
-    /// The effect as a file in which these parameters start at numbers, whatever model it is put into.
+    /// The effect as a file in which these parameters have numbers as starts, independent of the model.
     pub fn text_at(&self, parameters: &[NewParameter]) -> String {
         let mut effect = self.effect.clone();
-        start::begin(&mut effect, parameters);
+        start::set_starts(&mut effect, parameters);
         let items = vec![Item::Effect(Box::new(effect))];
         File { items }.to_string()
     }
@@ -186,10 +185,10 @@ impl Patch {
     /// The labels of the places of a model where the effect applies in any form, in the order of the model's text.
     pub fn places(&self, model: &Checked) -> Vec<String> {
         let values: Values = &|_| None;
-        let base = Base::of(model);
+        let base = ModelTree::of(model);
         let roles = Roles::of(&base, values);
         let forms = self.own_forms();
-        let before = visible::look(model.clone());
+        let before = identifiability::with_identifiability(model.clone());
         let applies = |place: &Place| {
             forms
                 .iter()
@@ -199,14 +198,14 @@ impl Patch {
         places.filter(applies).map(|place| place.label).collect()
     }
 
-    /// The model with the effect at each place where it applies, in the order of the model's text, and in each form:
-    /// where the pattern fits, the model has all that the effect asks for, and the compiler accepts what comes out.
+    /// The model with the effect at each place where it applies, in the order of the model's text, and in each form. It
+    /// applies if the pattern fits, the model has everything that the effect uses, and the compiler accepts the result.
     pub fn candidates(&self, model: &Checked, values: Values) -> Vec<Patched> {
         let forms = self.own_forms();
-        let base = Base::of(model);
+        let base = ModelTree::of(model);
         let roles = Roles::of(&base, values);
         let places = place::fitting(&base, &roles, &self.effect.pattern);
-        let before = visible::look(model.clone());
+        let before = identifiability::with_identifiability(model.clone());
         let at = |place: &Place| -> Vec<Patched> {
             let made = forms
                 .iter()
@@ -226,14 +225,15 @@ impl Patch {
         }
     }
 
-    /// The model with the effect at a place, given by its label, in its usual form. Starts and ranges that depend on the model are taken
-    /// at `values`, where these know none at the defaults, and else in the middle of the ranges.
+    /// The model with the effect at a place, given by its label, in its usual form. Starts and ranges that depend on
+    /// parameters of the model use their `values`, otherwise their defaults, otherwise the middle of their ranges.
     ///
     /// # Errors
-    /// A place where the effect does not apply, names that the model has already, every rule of the compiler that the
-    /// patched model breaks, and parameters that no output of it can tell apart, since effects are there to be found.
+    /// Fails if the effect does not apply at the place, if the model already has a name of the effect, if the patched
+    /// model breaks a rule of the compiler, or if the outputs cannot distinguish its parameters, since a search must be
+    /// able to find an effect.
     pub fn apply(&self, model: &Checked, place: &str, values: Values) -> Result<Patched, Report> {
-        let base = Base::of(model);
+        let base = ModelTree::of(model);
         let roles = Roles::of(&base, values);
         let places = place::fitting(&base, &roles, &self.effect.pattern);
         let Some(place) = places.iter().find(|own| own.label == place) else {
@@ -242,21 +242,27 @@ impl Patch {
             let mistake = effects::no_such_place(name.span, &name.text, place, model, &labels);
             return Err(self.report(refused(mistake)));
         };
-        self.made(&visible::look(model.clone()), &base, &roles, place, values)
+        self.made(
+            &identifiability::with_identifiability(model.clone()),
+            &base,
+            &roles,
+            place,
+            values,
+        )
     }
 
-    fn report(&self, diagnostics: Refused) -> Report {
+    fn report(&self, diagnostics: Refusal) -> Report {
         Report {
             sources: vec![self.source.clone()],
             diagnostics,
         }
     }
 
-    /// The model with the effect; `before` is the model without it, of which is known what its outputs tell apart.
+    /// The model with the effect. `before` is the model without it, whose identifiability has been checked.
     fn made(
         &self,
         before: &Checked,
-        base: &Base,
+        base: &ModelTree,
         roles: &Roles,
         place: &Place,
         values: Values,
@@ -268,7 +274,7 @@ impl Patch {
             text: tree.file().to_string(),
         };
         let model = check_text(text, &|_, path| Err(format!("{path} is not part of a patched model")))?;
-        let model = visible::look(model);
+        let model = identifiability::with_identifiability(model);
         if model.unseen().iter().any(|unseen| !before.unseen().contains(unseen)) {
             let mut report = model.warnings().clone();
             report
@@ -290,20 +296,20 @@ impl Patch {
 
     fn tree(
         &self,
-        base: &Base,
+        base: &ModelTree,
         roles: &Roles,
         place: &Place,
         values: Values,
-    ) -> Made<(Base, Vec<NewParameter>, Vec<SignalChange>)> {
+    ) -> PatchResult<(ModelTree, Vec<NewParameter>, Vec<SignalChange>)> {
         self.form_fits(base, place)?;
         let mut patching = apply::apply(Bindings::new(base, roles, &self.effect, place))?;
         let mut asked = Vec::new();
         for (declared, name) in &patching.parameters {
             let expressions = start::expressions(declared).map(|e| patching.meaning(e));
-            asked.push(start::Asked {
+            asked.push(start::BoundParameter {
                 declared,
                 name: name.clone(),
-                expressions: expressions.collect::<Made<_>>()?,
+                expressions: expressions.collect::<PatchResult<_>>()?,
             });
         }
         let (parameters, declared): (Vec<NewParameter>, Vec<_>) =
@@ -312,7 +318,7 @@ impl Patch {
         let mut tree = patching.tree;
         tidy::tidy(&mut tree);
         self.rename(&mut tree, &place.label);
-        // What this model has no use for.
+        // Removes what the patched model does not use.
         let used = |own: &NewParameter| {
             let sensed = patching.signals.iter().any(|signal| signal.parameter == own.name);
             sensed || tree.global(&own.name).is_some()
@@ -321,8 +327,8 @@ impl Patch {
         Ok((tree, parameters, patching.signals))
     }
 
-    /// What its form asks of the place beyond what all forms do.
-    fn form_fits(&self, base: &Base, place: &Place) -> Made<()> {
+    /// Checks the terms that its form requires in addition to those of the pattern.
+    fn form_fits(&self, base: &ModelTree, place: &Place) -> PatchResult<()> {
         let (Some(form), Some(link)) = (self.effect.forms.first(), base.link(&place.direction, &place.name)) else {
             return Ok(());
         };
@@ -336,8 +342,8 @@ impl Patch {
         }
     }
 
-    /// Says in name and sentence of a model what has been added.
-    fn rename(&self, tree: &mut Base, label: &str) {
+    /// Adds the effect to the name and the description of a model.
+    fn rename(&self, tree: &mut ModelTree, label: &str) {
         let (effect, axle) = (&self.effect.name.text, &mut tree.axle);
         let joint = if axle.name.text.contains("_with_") {
             "and"
@@ -370,8 +376,7 @@ impl Patch {
 }
 
 impl Patched {
-    /// The model file, with comments that say what was added and what speaks for it; one comment line for each line of
-    /// `evidence`.
+    /// The model file with comments about the effect, and one comment line for each line of `evidence`.
     pub fn text(&self, evidence: &str) -> String {
         let comments = self.comments.iter().map(String::as_str).chain(evidence.lines());
         let comments: String = comments.map(|line| format!("// {line}\n")).collect();

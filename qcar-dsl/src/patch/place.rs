@@ -1,6 +1,6 @@
 //! The places of a model that an effect's pattern fits.
 
-use super::base::{Base, coordinates, links};
+use super::model_tree::{ModelTree, coordinates, links};
 use super::roles::Roles;
 use super::stretch::upper;
 use super::terms::has_terms;
@@ -9,7 +9,7 @@ use crate::front::syntax::{Coordinate, CoordinateKind, Direction, Name, Pattern,
 /// A place of a model where an effect may apply.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
-    /// What the catalogue calls it: the name, or `x.body` where the name is of another direction first.
+    /// Its label: the name, or `x.body` if an earlier direction has the same name.
     pub label: String,
     /// The direction.
     pub direction: String,
@@ -18,7 +18,7 @@ pub struct Place {
 }
 
 /// Every place that a pattern fits, in the order of the text.
-pub fn fitting(base: &Base, roles: &Roles, pattern: &Pattern) -> Vec<Place> {
+pub fn fitting(base: &ModelTree, roles: &Roles, pattern: &Pattern) -> Vec<Place> {
     let mut places: Vec<Place> = Vec::new();
     for direction in base.directions() {
         let along = &direction.name.text;
@@ -69,7 +69,7 @@ fn named(direction: &Direction, fits: fn(&CoordinateKind) -> bool) -> Vec<String
     fitting.map(|coordinate| coordinate.name.text.clone()).collect()
 }
 
-/// What the catalogue calls a place of this name, if it may be one.
+/// The label of a place of this name; `None` if the pattern does not fit.
 fn called(roles: &Roles, along: &str, pattern: &Pattern, name: &str) -> Option<String> {
     let has_role = |role: &str| match pattern.kind {
         PlaceKind::Link => roles.is_link(along, name, role),
@@ -81,7 +81,7 @@ fn called(roles: &Roles, along: &str, pattern: &Pattern, name: &str) -> Option<S
     Some(by_name.or(by_role).unwrap_or(name).to_string())
 }
 
-/// What the first of the alternatives that fit calls a place; `None` where none fits.
+/// The label that the first fitting alternative gives a place; `None` if none fits.
 fn matching(all: &[(Name, Option<Name>)], fits: impl Fn(&str) -> bool) -> Option<Option<&str>> {
     if all.is_empty() {
         return Some(None);
@@ -90,15 +90,15 @@ fn matching(all: &[(Name, Option<Name>)], fits: impl Fn(&str) -> bool) -> Option
     Some(called.as_ref().map(|called| called.text.as_str()))
 }
 
-/// Whether the upper end of a link is where the pattern wants it.
-fn is_on(base: &Base, roles: &Roles, along: &str, pattern: &Pattern, name: &str) -> bool {
+/// True if the upper end of a link is at the point that the pattern requires.
+fn is_on(base: &ModelTree, roles: &Roles, along: &str, pattern: &Pattern, name: &str) -> bool {
     let Some(wanted) = &pattern.on else { return true };
     let end = base.link(along, name).and_then(|link| upper(base, along, link));
     let wanted = roles.meant(base, along, &wanted.text).unwrap_or(wanted.text.clone());
     end.is_some_and(|end| base.pointed_at(along, &end) == base.pointed_at(along, &wanted))
 }
 
-fn has(base: &Base, roles: &Roles, place: &Place, name: &str) -> bool {
+fn has(base: &ModelTree, roles: &Roles, place: &Place, name: &str) -> bool {
     let along = &place.direction;
     base.global(name).is_some() || base.declares(along, name) || roles.meant(base, along, name).is_some()
 }

@@ -4,10 +4,10 @@ use crate::front::syntax::{
     Comparison, Coordinate, CoordinateKind, Dotted, Expression, ExpressionKind, LawStatement, Let, List, Logic, Table,
 };
 
-/// What a name becomes: `None` leaves it as it is.
+/// The replacement of a name; `None` keeps it.
 pub type Rename<'a, Mistake> = &'a mut dyn FnMut(&Dotted) -> Result<Option<Expression>, Mistake>;
 
-/// An expression whose names are replaced.
+/// An expression with its names replaced.
 pub fn expression<Mistake>(e: &Expression, rename: Rename<'_, Mistake>) -> Result<Expression, Mistake> {
     let mut of = |part: &Expression| expression(part, rename);
     let kind = match &e.kind {
@@ -50,7 +50,7 @@ fn logic<Mistake>(of: &Logic<Comparison>, rename: Rename<'_, Mistake>) -> Result
     })
 }
 
-/// A law whose expressions are changed.
+/// A law with its expressions changed.
 pub fn law<Mistake>(
     body: &[LawStatement],
     change: &mut dyn FnMut(&Expression) -> Result<Expression, Mistake>,
@@ -79,7 +79,7 @@ pub fn law<Mistake>(
     Ok(changed)
 }
 
-/// Something that moves, its inertia changed.
+/// A coordinate with its inertia changed.
 pub fn coordinate<Mistake>(
     of: &Coordinate,
     change: &mut dyn FnMut(&Expression) -> Result<Expression, Mistake>,
@@ -92,7 +92,7 @@ pub fn coordinate<Mistake>(
     Ok(Coordinate { kind, ..of.clone() })
 }
 
-/// Every name in an expression.
+/// Calls a function for every name in an expression.
 pub fn names_in(e: &Expression, each: &mut dyn FnMut(&Dotted)) {
     let mut look = |name: &Dotted| {
         each(name);
@@ -101,7 +101,7 @@ pub fn names_in(e: &Expression, each: &mut dyn FnMut(&Dotted)) {
     let Ok(_) = expression(e, &mut look);
 }
 
-/// An expression that stands in no file.
+/// An expression that comes from no file.
 pub fn made(kind: ExpressionKind) -> Expression {
     Expression {
         kind,

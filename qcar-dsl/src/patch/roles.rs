@@ -1,12 +1,12 @@
-//! The roles of the parts of a model, read from its structure and not from names.
+//! The roles of the parts of a model, which follow from its structure and not from names.
 //!
-//! The tyre joins a mass to a road; that direction is the axle's own. A model without a road has one axle in every
-//! direction, and no wheel. Weights are the model's own expressions at the values that somebody knows.
+//! The tyre joins a mass to a road; that direction is the axle's own. In a model without a road, every direction is the
+//! axle's own, and there is no wheel. Masses are compared at the known values of the parameters.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::ask::{Values, numbers};
-use super::base::{Base, coordinates, links};
+use super::model_tree::{ModelTree, coordinates, links};
+use super::query::{Values, numbers};
 use super::rewrite::names_in;
 use super::stretch::{levered, lower, upper};
 use crate::front::syntax::{CoordinateKind, Direction, Dotted, Expression, Link};
@@ -17,26 +17,27 @@ pub const OF_LINKS: [&str; 6] = ["tire", "suspension", "mount", "hanger", "pivot
 /// The words for masses.
 pub const OF_MASSES: [&str; 3] = ["body", "wheel", "pivot"];
 
-/// The parts of a model by what they do.
+/// The parts of a model by their roles.
 #[derive(Clone, Debug, Default)]
 pub struct Roles {
     /// The direction of the tyre.
     along: Option<String>,
-    /// The mass on the tyre; with a belt of its own between, the heavier one that alone holds it.
+    /// The mass on the tyre. If that is a belt, connected only to one heavier mass, the wheel is the heavier mass.
     wheel: Option<String>,
-    /// The heaviest mass of each direction but the wheel; along others the one of the same name, where there is one.
+    /// The heaviest mass of each direction except the wheel. Other directions take the mass of the same name, if there
+    /// is one.
     body: BTreeMap<String, String>,
-    /// The mass other than the body that levers of the suspension turn about.
+    /// The mass, other than the body, about which levers of the suspension turn.
     pivot: Option<String>,
     /// Each link of the axle's own directions with its role.
     links: BTreeMap<(String, String), &'static str>,
-    /// What hangs on the rest by one mount alone.
+    /// Parts that are connected to the rest by one mount only.
     hanging: BTreeSet<String>,
 }
 
 impl Roles {
-    /// Finds them.
-    pub fn of(base: &Base, values: Values) -> Roles {
+    /// Determines the roles.
+    pub fn of(base: &ModelTree, values: Values) -> Roles {
         let mut roles = Roles::default();
         let tyre = base.directions().find_map(|direction| {
             let tyre = links(direction).find(|link| is_tyre(direction, link))?;
@@ -68,8 +69,8 @@ impl Roles {
         roles
     }
 
-    /// The name of the part that a word stands for along a direction.
-    pub fn meant(&self, base: &Base, direction: &str, word: &str) -> Option<String> {
+    /// The name of the part with a role along a direction.
+    pub fn meant(&self, base: &ModelTree, direction: &str, word: &str) -> Option<String> {
         let moves = |name: &&String| base.coordinate(direction, name).is_some();
         match word {
             "body" => self.body.get(direction).cloned(),
@@ -89,14 +90,14 @@ impl Roles {
         }
     }
 
-    /// Whether a link has a role.
+    /// True if a link has a role.
     pub fn is_link(&self, direction: &str, link: &str, role: &str) -> bool {
         let own = self.links.get(&(direction.to_string(), link.to_string()));
-        // A hanger, and what carries the pivot, is a mount.
+        // A hanger and the mount of a pivot are also mounts.
         own.is_some_and(|own| *own == role || role == "mount" && ["hanger", "pivot_mount"].contains(own))
     }
 
-    /// Whether a mass has a role: along the axle's own direction.
+    /// True if a mass has a role in the axle's own direction.
     pub fn is_mass(&self, direction: &str, mass: &str, role: &str) -> bool {
         let own = match role {
             "body" => self.body.get(direction),
@@ -110,8 +111,8 @@ impl Roles {
         self.along.as_ref().is_none_or(|along| along == direction)
     }
 
-    /// What levers of the suspension turn about, where that is a mass of its own.
-    fn found_pivot(&self, base: &Base) -> Option<String> {
+    /// The mass about which levers of the suspension turn, if it is a separate mass.
+    fn found_pivot(&self, base: &ModelTree) -> Option<String> {
         let along = self.along.as_ref()?;
         let (wheel, body) = (self.wheel.as_ref()?, self.body.get(along));
         let suspending = links(base.direction(along)?).filter(|link| held(base, along, link).contains(wheel));
@@ -119,7 +120,7 @@ impl Roles {
         points.find(|point| point != wheel && Some(point) != body && is_mass(base, along, point))
     }
 
-    fn sort_links(&mut self, base: &Base, direction: &Direction) {
+    fn sort_links(&mut self, base: &ModelTree, direction: &Direction) {
         let along = &direction.name.text;
         for link in links(direction) {
             let role = match (self.is_own(along), &self.wheel) {
@@ -133,7 +134,7 @@ impl Roles {
         }
     }
 
-    fn role_along(&mut self, base: &Base, direction: &Direction, link: &Link) -> Option<&'static str> {
+    fn role_along(&mut self, base: &ModelTree, direction: &Direction, link: &Link) -> Option<&'static str> {
         let along = &direction.name.text;
         let Some(wheel) = self.wheel.clone() else {
             return Some("suspension");
@@ -167,11 +168,11 @@ impl Roles {
     }
 }
 
-/// The masses of every direction with what they weigh.
+/// The masses of every direction with their values, kg.
 struct Masses(Vec<(String, String, f64)>);
 
 impl Masses {
-    fn of(base: &Base, values: Values) -> Masses {
+    fn of(base: &ModelTree, values: Values) -> Masses {
         let mut all = Vec::new();
         for direction in base.directions() {
             for coordinate in coordinates(direction) {
@@ -198,7 +199,7 @@ impl Masses {
         Some(own.2)
     }
 
-    /// The heaviest mass of a direction but one; of equal or unknown ones, the first.
+    /// The heaviest mass of a direction, except `but`; of equal or unknown masses, the first.
     fn heaviest(&self, direction: &str, but: Option<&str>) -> Option<String> {
         let others = self
             .0
@@ -217,8 +218,8 @@ impl Masses {
     }
 }
 
-/// From the mass on the tyre to the wheel: a belt hangs on a heavier mass alone.
-fn carried(base: &Base, direction: &Direction, mass: String, masses: &Masses, body: Option<&String>) -> String {
+/// The wheel, given the mass on the tyre: a belt is connected only to one heavier mass, which is then the wheel.
+fn carried(base: &ModelTree, direction: &Direction, mass: String, masses: &Masses, body: Option<&String>) -> String {
     let along = &direction.name.text;
     let mut others = BTreeSet::new();
     for link in links(direction).filter(|link| !is_tyre(direction, link)) {
@@ -238,14 +239,14 @@ fn carried(base: &Base, direction: &Direction, mass: String, masses: &Masses, bo
     }
 }
 
-fn is_mass(base: &Base, direction: &str, point: &str) -> bool {
+fn is_mass(base: &ModelTree, direction: &str, point: &str) -> bool {
     let own = base.coordinate(direction, point);
     own.is_some_and(|own| matches!(own.kind, CoordinateKind::Mass(_)))
 }
 
-/// What is connected to a point by links but some.
+/// The points that are connected to a point by links, without the links in `but`.
 fn reached(
-    base: &Base,
+    base: &ModelTree,
     direction: &Direction,
     from: &str,
     but: &dyn Fn(&Link, &BTreeSet<String>) -> bool,
@@ -270,8 +271,8 @@ fn reached(
     }
 }
 
-/// What a link holds of its own direction.
-fn held(base: &Base, direction: &str, link: &Link) -> BTreeSet<String> {
+/// The points of its own direction that a link connects.
+fn held(base: &ModelTree, direction: &str, link: &Link) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     names_in(&link.stretch, &mut |name| {
         found.extend(own_point(base, direction, name));
@@ -279,7 +280,7 @@ fn held(base: &Base, direction: &str, link: &Link) -> BTreeSet<String> {
     found
 }
 
-fn own_point(base: &Base, direction: &str, name: &Dotted) -> Option<String> {
+fn own_point(base: &ModelTree, direction: &str, name: &Dotted) -> Option<String> {
     let point = match name.names.as_slice() {
         [point] => point,
         [home, point] if home.text == direction => point,

@@ -1,6 +1,6 @@
-//! What an effect's file must say, whatever the model.
+//! Rules for an effect's file that hold for any model.
 
-use super::Made;
+use super::PatchResult;
 use super::roles::{OF_LINKS, OF_MASSES};
 use super::terms::{LINEAR, WORDS};
 use crate::diagnostic::{Diagnostic, Severity, effects, names, reading};
@@ -9,7 +9,7 @@ use crate::front::syntax::{Change, Effect, EffectParameter, Item, Name, PlaceKin
 use crate::source::{Source, Span};
 
 /// The only effect of a file.
-pub fn effect_of(source: &Source) -> Made<Effect> {
+pub fn effect_of(source: &Source) -> PatchResult<Effect> {
     let reading = parse_text(source, 0);
     let mut found = reading.mistakes;
     let effects: Vec<Effect> = reading
@@ -74,7 +74,7 @@ fn mistakes(effect: &Effect) -> Vec<Diagnostic> {
     found
 }
 
-/// Each form has a name of its own, and says what it is.
+/// Each form has a unique name and a description.
 fn forms_are_told_apart(effect: &Effect) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for (place, form) in effect.forms.iter().enumerate() {
@@ -91,7 +91,7 @@ fn forms_are_told_apart(effect: &Effect) -> Vec<Diagnostic> {
     found
 }
 
-/// Each form vanishes with one parameter at most.
+/// Each form has at most one strength.
 fn second_strengths(effect: &Effect) -> Vec<Diagnostic> {
     let shared = strengths(effect.parameters());
     let mut found = beyond_first(effect, &shared);
@@ -117,7 +117,7 @@ fn beyond_first(effect: &Effect, strengths: &[&Name]) -> Vec<Diagnostic> {
         .collect()
 }
 
-/// A person must be able to judge an effect: what it is, where its law comes from, how it shows.
+/// An effect needs a description, the source of its law and how it shows, so that a person can judge it.
 fn undescribed(effect: &Effect) -> Vec<Diagnostic> {
     let span = effect.name.span;
     let told = [

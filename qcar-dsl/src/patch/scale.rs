@@ -16,7 +16,7 @@ pub enum Scale {
 }
 
 impl Scale {
-    /// Every one.
+    /// All reference values.
     pub const ALL: [Scale; 4] = [Scale::Force, Scale::Travel, Scale::Speed, Scale::Acceleration];
 
     /// As written after the dot.
@@ -29,17 +29,17 @@ impl Scale {
         }
     }
 
-    /// The one that is written so.
+    /// The reference value of a word.
     pub fn written(word: &str) -> Option<Scale> {
         Scale::ALL.into_iter().find(|scale| scale.word() == word)
     }
 
-    /// The name under which the value of a link or mass is stored: `z.damper.force_scale`.
+    /// The name of the reference value of a link or mass: `z.damper.force_scale`.
     pub fn name(self, direction: &str, place: &str) -> String {
         format!("{direction}.{place}.{}", self.word())
     }
 
-    /// A usual value of an axle on a rig, for a model without measurements, and its unit.
+    /// A typical value of an axle on a rig, for a model without measurements, and its unit.
     fn usual(self) -> (f64, &'static [(&'static str, i32)]) {
         match self {
             Scale::Force => (1e3, &[("N", 1)]),

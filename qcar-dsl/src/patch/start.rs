@@ -1,16 +1,15 @@
-//! Start values and plausible ranges of an effect's parameters: expressions of the model's own parameters,
-//! as numbers.
+//! Start values and plausible ranges of an effect's parameters: evaluates their expressions in the model's parameters.
 
 use std::collections::BTreeMap;
 
 use qcar_model::ParameterRole;
 
-use super::ask::{Values, question, value, with_questions};
-use super::base::Base;
+use super::model_tree::ModelTree;
+use super::query::{Values, as_quantity, value, with_quantities};
 use super::rewrite::{made, names_in};
 use super::scale::Scale;
 
-use super::{NewParameter, Refused};
+use super::{NewParameter, Refusal};
 use crate::diagnostic::{Diagnostic, effects};
 use crate::front::syntax::{
     Change, Effect, EffectParameter, Expression, ExpressionKind, Name, Number, Parameter, ParameterDefault, Role,
@@ -20,16 +19,16 @@ use crate::model::Model;
 use crate::units::Unit;
 
 /// A parameter of an effect with its expressions in the names of the model.
-pub struct Asked<'a> {
-    /// As the effect declares it.
+pub struct BoundParameter<'a> {
+    /// The declaration in the effect.
     pub declared: &'a EffectParameter,
     /// Its name in the model.
     pub name: String,
-    /// What [`expressions`] gives.
+    /// Its expressions, in the order of [`expressions`].
     pub expressions: Vec<Expression>,
 }
 
-/// Start, lower and upper bound, and the value at which a strength vanishes where that is an expression.
+/// Start, lower and upper bound, and the value at which a strength vanishes if that is an expression.
 pub fn expressions(declared: &EffectParameter) -> impl Iterator<Item = &Expression> {
     let vanishes_at = match &declared.role {
         Role::Strength(VanishesAt::Value(value)) => Some(value),
@@ -39,14 +38,18 @@ pub fn expressions(declared: &EffectParameter) -> impl Iterator<Item = &Expressi
     [&declared.start, low, high].into_iter().chain(vanishes_at)
 }
 
-/// What an expression stands for, as a derived quantity of a model that is only asked.
+/// Prefixes of the names of derived quantities, one for each kind of expression.
 const ROLES: [&str; 4] = ["start of ", "low end of ", "high end of ", "vanishing value of "];
 
-/// The numbers of every parameter, and its declaration in the model.
+/// The start, range and declaration of every parameter.
 ///
 /// # Errors
-/// Expressions that mean nothing, are of another unit than the parameter, or have no value.
-pub fn evaluate(base: &Base, asked: &[Asked], values: Values) -> Result<Vec<(NewParameter, Parameter)>, Refused> {
+/// Fails for expressions with unknown names, with a unit other than the parameter's, or without a value.
+pub fn evaluate(
+    base: &ModelTree,
+    asked: &[BoundParameter],
+    values: Values,
+) -> Result<Vec<(NewParameter, Parameter)>, Refusal> {
     let (model, found) = with_expressions(base, asked);
     if !found.is_empty() {
         return Err(found);
@@ -72,11 +75,11 @@ pub fn evaluate(base: &Base, asked: &[Asked], values: Values) -> Result<Vec<(New
     if found.is_empty() { Ok(all) } else { Err(found) }
 }
 
-/// The model with each expression as a question, and the parameters themselves for their units.
-fn with_expressions(base: &Base, asked: &[Asked]) -> (Model, Vec<Diagnostic>) {
-    let mut questions: Vec<Statement> = scales(asked).into_iter().map(Statement::Parameter).collect();
+/// The model with each expression as a derived quantity, and with the parameters themselves for their units.
+fn with_expressions(base: &ModelTree, asked: &[BoundParameter]) -> (Model, Vec<Diagnostic>) {
+    let mut quantities: Vec<Statement> = scales(asked).into_iter().map(Statement::Parameter).collect();
     for one in asked {
-        questions.push(Statement::Parameter(Parameter {
+        quantities.push(Statement::Parameter(Parameter {
             known: false,
             clock: false,
             name: Name::new(unit_of(one)),
@@ -86,13 +89,13 @@ fn with_expressions(base: &Base, asked: &[Asked]) -> (Model, Vec<Diagnostic>) {
             doc: String::new(),
         }));
         let expressions = ROLES.iter().zip(&one.expressions);
-        questions.extend(expressions.map(|(role, e)| question(&format!("{role}{}", one.name), e)));
+        quantities.extend(expressions.map(|(role, e)| as_quantity(&format!("{role}{}", one.name), e)));
     }
-    with_questions(base, questions)
+    with_quantities(base, quantities)
 }
 
 /// The reference values that expressions use.
-fn scales(asked: &[Asked]) -> Vec<Parameter> {
+fn scales(asked: &[BoundParameter]) -> Vec<Parameter> {
     let mut found: Vec<Parameter> = Vec::new();
     for e in asked.iter().flat_map(|one| &one.expressions) {
         names_in(e, &mut |name| {
@@ -105,7 +108,7 @@ fn scales(asked: &[Asked]) -> Vec<Parameter> {
     found
 }
 
-fn unit_of(one: &Asked) -> String {
+fn unit_of(one: &BoundParameter) -> String {
     format!("unit of {}", one.name)
 }
 
@@ -117,14 +120,18 @@ struct Numbers {
     unit: Unit,
 }
 
-fn numbers(one: &Asked, model: &Model, answers: &BTreeMap<&str, (f64, Unit)>) -> Result<Numbers, Box<Diagnostic>> {
+fn numbers(
+    one: &BoundParameter,
+    model: &Model,
+    answers: &BTreeMap<&str, (f64, Unit)>,
+) -> Result<Numbers, Box<Diagnostic>> {
     let name = unit_of(one);
     let unit = model.parameters.iter().find(|parameter| parameter.name == name);
     let unit = unit.map_or(Unit::ONE, |parameter| parameter.unit);
     let mut numbers = [0.0; ROLES.len()];
     for ((number, role), expression) in numbers.iter_mut().zip(ROLES).zip(&one.expressions) {
-        let question = format!("{role}{}", one.name);
-        let (value, own) = answers.get(question.as_str()).copied().unwrap_or((f64::NAN, unit));
+        let quantity = format!("{role}{}", one.name);
+        let (value, own) = answers.get(quantity.as_str()).copied().unwrap_or((f64::NAN, unit));
         if own != unit && !is_plain(expression) {
             let what = format!("the {}`{}`", role, one.declared.name.text);
             return Err(Box::new(effects::start_of_other_unit(
@@ -178,12 +185,12 @@ fn is_plain(e: &Expression) -> bool {
     }
 }
 
-/// To three digits, so that a file reads well.
+/// Rounds to three digits, so that a file is easy to read.
 fn rounded(value: f64) -> f64 {
     format!("{value:.2e}").parse().unwrap_or(value)
 }
 
-fn declaration(one: &Asked, numbers: Numbers, base: &Base) -> (NewParameter, Parameter) {
+fn declaration(one: &BoundParameter, numbers: Numbers, base: &ModelTree) -> (NewParameter, Parameter) {
     let declared = one.declared;
     let (low, high) = numbers.range;
     let [from, to] = [(&declared.range.0, low), (&declared.range.1, high)].map(|(e, value)| number(e, value));
@@ -210,7 +217,7 @@ fn declaration(one: &Asked, numbers: Numbers, base: &Base) -> (NewParameter, Par
     (new, parameter)
 }
 
-/// The number as the effect writes it, or in the declared unit where it is computed.
+/// The number as the effect writes it, or in the declared unit if it is computed.
 fn number(e: &Expression, value: f64) -> Number {
     match &e.kind {
         ExpressionKind::Number(number) => number.clone(),
@@ -226,12 +233,12 @@ fn number(e: &Expression, value: f64) -> Number {
     }
 }
 
-/// Sets where parameters start, and their ranges, to numbers in SI; others stay as they are.
-pub fn begin(effect: &mut Effect, values: &[NewParameter]) {
+/// Sets the starts and ranges of these parameters to numbers in SI; other parameters do not change.
+pub fn set_starts(effect: &mut Effect, values: &[NewParameter]) {
     for change in &mut effect.body {
         let Change::Parameter(declared) = change else { continue };
         if let Some(own) = values.iter().find(|own| own.effect_name == declared.name.text) {
-            // A plain number is in the declared unit, which is a coherent one.
+            // A plain number is in the declared unit, which is coherent.
             let plain = |value: f64| made(ExpressionKind::Number(Number::new(value)));
             declared.start = plain(own.start);
             declared.range = (plain(own.range.0), plain(own.range.1));

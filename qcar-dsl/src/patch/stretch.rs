@@ -1,35 +1,35 @@
-//! What a link connects: its ends, and the lever between it and a point.
+//! The ends of a link, and the motion ratio between it and a point.
 
-use super::base::Base;
+use super::model_tree::ModelTree;
 use super::rewrite::binary;
 use crate::front::syntax::{Expression, ExpressionKind, Link, Operator};
 
-/// A summand of a stretch: a point as it is written, its factor (`None` for one), and whether it is subtracted.
+/// A summand of a stretch: a point as written, its factor (`None` for 1), and true if it is subtracted.
 struct Part {
     point: String,
     factor: Option<Expression>,
     negative: bool,
 }
 
-/// The first point of a stretch that stands for itself: the upper end of the link.
-pub fn upper(base: &Base, direction: &str, link: &Link) -> Option<String> {
+/// The upper end of a link: the first point that is added without a factor.
+pub fn upper(base: &ModelTree, direction: &str, link: &Link) -> Option<String> {
     end(base, direction, link, false)
 }
 
-/// The first point that is subtracted from the stretch as a whole: the lower end of the link.
-pub fn lower(base: &Base, direction: &str, link: &Link) -> Option<String> {
+/// The lower end of a link: the first point that is subtracted without a factor.
+pub fn lower(base: &ModelTree, direction: &str, link: &Link) -> Option<String> {
     end(base, direction, link, true)
 }
 
-fn end(base: &Base, direction: &str, link: &Link, negative: bool) -> Option<String> {
+fn end(base: &ModelTree, direction: &str, link: &Link, negative: bool) -> Option<String> {
     let mut parts = parts(base, direction, &link.stretch).into_iter();
     let found = parts.find(|part| part.negative == negative && part.factor.is_none())?;
     Some(found.point)
 }
 
-/// How far a point travels for a travel of the link: the size of its factor in the stretch. `None` where the link
-/// travels as far as the point, or does not hold it.
-pub fn lever(base: &Base, direction: &str, link: &Link, point: &str) -> Option<Expression> {
+/// Travel of the link over travel of a point: the absolute value of the point's factor in the stretch. `None` if the
+/// factor is one, or if the stretch does not contain the point.
+pub fn lever(base: &ModelTree, direction: &str, link: &Link, point: &str) -> Option<Expression> {
     let parts = parts(base, direction, &link.stretch);
     let point = base.pointed_at(direction, point);
     let mut own = parts
@@ -38,14 +38,14 @@ pub fn lever(base: &Base, direction: &str, link: &Link, point: &str) -> Option<E
     own.next().and_then(|part| part.factor)
 }
 
-/// The points that stand with a factor in a stretch: those that levers turn with, and about.
-pub fn levered(base: &Base, direction: &str, link: &Link) -> Vec<String> {
+/// The points that have a factor in a stretch: the moving ends and the pivots of levers.
+pub fn levered(base: &ModelTree, direction: &str, link: &Link) -> Vec<String> {
     let parts = parts(base, direction, &link.stretch).into_iter();
     let levered = parts.filter(|part| part.factor.is_some());
     levered.map(|part| base.pointed_at(direction, &part.point)).collect()
 }
 
-fn parts(base: &Base, direction: &str, stretch: &Expression) -> Vec<Part> {
+fn parts(base: &ModelTree, direction: &str, stretch: &Expression) -> Vec<Part> {
     match &stretch.kind {
         ExpressionKind::Name(name) => vec![Part {
             point: name.to_string(),
@@ -98,8 +98,8 @@ fn opposite(parts: Vec<Part>) -> Vec<Part> {
     parts.into_iter().map(one).collect()
 }
 
-/// Whether a point stands in an expression.
-fn moves(base: &Base, direction: &str, e: &Expression) -> bool {
+/// True if an expression contains a point.
+fn moves(base: &ModelTree, direction: &str, e: &Expression) -> bool {
     let mut found = false;
     super::rewrite::names_in(e, &mut |name| {
         let (home, point) = match name.names.as_slice() {

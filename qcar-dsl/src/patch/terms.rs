@@ -5,13 +5,13 @@ use std::collections::BTreeSet;
 use super::rewrite::names_in;
 use crate::front::syntax::{Expression, ExpressionKind, LawStatement, Name};
 
-/// The words for what a law may have.
+/// The words for terms that a law may have.
 pub const WORDS: [&str; 5] = ["spring", "damper", "inerter", "damping", "law"];
 
-/// The words for linear terms, which can be asked for and replaced.
+/// The words for linear terms, which effects can read and replace.
 pub const LINEAR: [&str; 3] = ["spring", "damper", "inerter"];
 
-/// Whether a statement of a law is a linear term of a kind.
+/// True if a statement of a law is a linear term of a kind.
 pub fn is_term(statement: &LawStatement, kind: &str) -> bool {
     match statement {
         LawStatement::Spring(_) => kind == "spring",
@@ -21,7 +21,7 @@ pub fn is_term(statement: &LawStatement, kind: &str) -> bool {
     }
 }
 
-/// Whether a law has all of some terms.
+/// True if a law has all of these terms.
 pub fn has_terms(law: &[LawStatement], terms: &[Name]) -> bool {
     terms.iter().all(|term| match term.text.as_str() {
         "damping" => damps(law),
@@ -32,8 +32,8 @@ pub fn has_terms(law: &[LawStatement], terms: &[Name]) -> bool {
     })
 }
 
-/// A linear damper, an element, or a force of the speed or of what is computed from a state. A force that is a state as
-/// it stands is friction beside other laws.
+/// True if a law has damping: a linear damper, an element, or a force that depends on the rate or on a value computed
+/// from a state. A force that equals a state is friction in addition to other laws.
 fn damps(law: &[LawStatement]) -> bool {
     let mut moving: BTreeSet<&str> = BTreeSet::from(["v"]);
     let mut found = false;

@@ -1,13 +1,13 @@
-//! Removes what a patch leaves unused: the coefficient of a term that was replaced, the point that nothing is at.
+//! Removes declarations that a patch leaves unused: the coefficient of a replaced term, or a point without links.
 
 use std::collections::BTreeSet;
 
-use super::base::Base;
+use super::model_tree::ModelTree;
 use super::rewrite::names_in;
 use crate::front::syntax::{Dotted, Expression, ExpressionKind, ParameterDefault, Statement};
 
-/// Removes parameters, derived quantities and points that nothing uses, until each of them is used.
-pub fn tidy(tree: &mut Base) {
+/// Removes unused parameters, derived quantities and points, repeatedly until all are used.
+pub fn tidy(tree: &mut ModelTree) {
     loop {
         let used = used(tree);
         let mut removed = 0;
@@ -32,14 +32,14 @@ fn is_used(statement: &Statement, used: &BTreeSet<String>) -> bool {
     match statement {
         Statement::Parameter(parameter) => used.contains(&parameter.name.text),
         Statement::Let(definition) => used.contains(&definition.name.text),
-        // What several coordinates move is seen, used or not.
+        // The acceleration of a point that several coordinates move is an output, even if nothing else uses the point.
         Statement::Point(name, target) => used.contains(&name.text) || !matches!(target.kind, ExpressionKind::Name(_)),
         _ => true,
     }
 }
 
-/// Every part of every name that an expression, a default or a path says.
-fn used(tree: &Base) -> BTreeSet<String> {
+/// Every part of every name in an expression, a default or a path.
+fn used(tree: &ModelTree) -> BTreeSet<String> {
     let mut used = BTreeSet::new();
     let mut asked = tree.clone();
     asked.change_expressions(&mut |e: &Expression| {

@@ -1,7 +1,7 @@
-//! Programs interpreted at run time: the operations of the generated code, in an order of their own.
+//! Programs interpreted at run time: the operations of the generated code, reordered for speed.
 
 // The arguments of a program.
-pub mod given;
+pub mod arguments;
 // The order in which operations are evaluated.
 mod order;
 // A program prepared for evaluation.
@@ -10,8 +10,8 @@ mod code;
 use qcar_model::{About, Contact, Contacts, LANES, Lanes, Model, Points, ResponseMut};
 
 use crate::program::schedule::Compiled;
+use arguments::{Arguments, Part, contact_entries, prepared, unprepared};
 use code::Code;
-use given::{Given, Part, contact_entries, prepared, unprepared};
 
 /// A compiled model, ready to be evaluated.
 ///
@@ -27,7 +27,7 @@ pub struct Evaluator {
     parameter_jacobian: Code,
     responses: Vec<ResponseCode>,
     rolling: Option<RollingCode>,
-    /// Links that stand alone, by their places.
+    /// Single links on a dynamometer, each with its position in `About::links`.
     alone: Vec<(usize, Evaluator)>,
 }
 
@@ -44,8 +44,8 @@ struct RollingCode {
     outputs: Code,
 }
 
-/// At several points.
-fn sweep(code: &Code, given: &Given, count: usize, into: &mut [f64]) {
+/// Runs a program at several points.
+fn sweep(code: &Code, given: &Arguments, count: usize, into: &mut [f64]) {
     code.sweep(given, &[Part::States, Part::Inputs], count, &mut [into]);
 }
 
@@ -78,7 +78,7 @@ impl Evaluator {
         }
     }
 
-    /// The same with a link that stands alone, too, compiled as a model of its own.
+    /// The same evaluator with the model of a single link on a dynamometer.
     pub fn with_alone(mut self, axis: &str, link: &str, compiled: &Compiled) -> Self {
         let mut links = self.about.links.iter();
         let place = links.position(|own| own.axis == axis && own.name == link);
@@ -93,7 +93,8 @@ impl Model for Evaluator {
     }
 
     fn prepare(&self, p: &[f64], constants: &mut [f64]) {
-        self.prepare.run(&Given::default().with(Part::Parameters, p), constants);
+        self.prepare
+            .run(&Arguments::default().with(Part::Parameters, p), constants);
     }
 
     fn derivative(&self, constants: &[f64], x: &[f64], u: &[f64], dx: &mut [f64]) {
@@ -156,7 +157,7 @@ impl Model for Evaluator {
         let Some(response) = self.responses.get(excitation) else {
             return;
         };
-        let given = Given::default()
+        let given = Arguments::default()
             .with(Part::Constants, constants)
             .with(Part::Frequency, omega);
         let sweep = |code: &Code, into: &mut [&mut [f64]]| code.sweep(&given, &[Part::Frequency], omega.len(), into);
@@ -244,14 +245,14 @@ impl Model for Evaluator {
     }
 }
 
-type GivenSets<'a> = [(Part, &'a [Lanes]); 3];
+type ArgumentSets<'a> = [(Part, &'a [Lanes]); 3];
 
-/// As [`prepared`], of several sets.
-fn prepared_sets<'a>(constants: &'a [Lanes], x: &'a [Lanes], u: &'a [Lanes]) -> GivenSets<'a> {
+/// As [`prepared`], for several parameter sets.
+fn prepared_sets<'a>(constants: &'a [Lanes], x: &'a [Lanes], u: &'a [Lanes]) -> ArgumentSets<'a> {
     [(Part::Constants, constants), (Part::States, x), (Part::Inputs, u)]
 }
 
-/// As [`unprepared`], of several sets.
-fn unprepared_sets<'a>(p: &'a [Lanes], x: &'a [Lanes], u: &'a [Lanes]) -> GivenSets<'a> {
+/// As [`unprepared`], for several parameter sets.
+fn unprepared_sets<'a>(p: &'a [Lanes], x: &'a [Lanes], u: &'a [Lanes]) -> ArgumentSets<'a> {
     [(Part::Parameters, p), (Part::States, x), (Part::Inputs, u)]
 }

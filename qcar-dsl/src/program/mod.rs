@@ -1,8 +1,8 @@
-//! Straight-line programs: what is left of a model when its equations are scheduled.
+//! Straight-line programs, the scheduled equations of a model.
 //!
-//! A program computes its outputs from its inputs by a list of operations, each a value of its own, in order.
-//! The same program is printed as Rust and interpreted at run time, operation by operation, so that both
-//! give the same bits. Whole powers are products already, and a divisor that serves twice is a reciprocal.
+//! A program computes its outputs from its inputs by a list of operations in order. Each operation gives one value. The
+//! same program is printed as Rust and interpreted at run time, operation by operation, so that both give the same
+//! bits. Whole powers are already products, and a divisor that is used twice is a reciprocal.
 
 // From expressions to a sequence of operations.
 pub mod schedule;
@@ -11,18 +11,18 @@ pub mod evaluate;
 
 use crate::expr::{Curve, Function, Symbol};
 
-/// A value of a program: an input, a constant or the result of an operation, by its place.
+/// A value of a program (an input, a constant or the result of an operation) by its position in [`Program::ops`].
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
 pub struct Value(pub u32);
 
-/// How a value comes about. The arguments come earlier in the program.
+/// The operation that gives a value. Its arguments come earlier in the program.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[expect(missing_docs, reason = "each mirrors the node of its name in `expr::Node`")]
 pub enum Op {
     Constant(f64),
-    /// A leaf, given by the caller.
+    /// A leaf, which the caller gives.
     Input(Symbol),
-    /// What depends on the parameters alone and was computed once for a parameter set, by its place.
+    /// A value that depends on the parameters alone and is computed once for a parameter set, by its position.
     Prepared(u32),
     Neg(Value),
     Add(Value, Value),
@@ -34,12 +34,12 @@ pub enum Op {
     Max(Value, Value),
     Call(Function, Value),
     Select(Value, Value, Value),
-    /// Its curve by the place in [`Program::curves`].
+    /// The order, the abscissa and the position of the curve in [`Program::curves`].
     Table(u8, Value, u32),
 }
 
 impl Program {
-    /// What the outputs need, and nothing else.
+    /// The program without values that its outputs do not need.
     pub fn pruned(&self) -> Program {
         let needed = self.needed(&self.outputs);
         let mut places = vec![Value(0); self.ops.len()];
@@ -56,7 +56,7 @@ impl Program {
         }
     }
 
-    /// For each value, whether one of these needs it.
+    /// For each value, true if one of these needs it.
     pub fn needed(&self, by: &[Value]) -> Vec<bool> {
         let mut needed = vec![false; self.ops.len()];
         for value in by {
@@ -72,7 +72,7 @@ impl Program {
         needed
     }
 
-    /// The values that an operation is computed from, in order; none for a leaf.
+    /// The arguments of an operation, in order; none for a leaf.
     pub fn arguments(&self, op: Op) -> impl Iterator<Item = Value> {
         let three = match op {
             Op::Constant(_) | Op::Input(_) | Op::Prepared(_) => [None; 3],
@@ -91,12 +91,12 @@ impl Program {
 }
 
 impl Op {
-    /// True where nothing is computed: a number, or what the caller gives.
+    /// True if nothing is computed: for a number, or a value that the caller gives.
     pub fn is_leaf(self) -> bool {
         matches!(self, Op::Constant(_) | Op::Input(_) | Op::Prepared(_))
     }
 
-    /// The same operation on values of other numbers; a curve keeps its points.
+    /// The same operation with renumbered arguments; a curve keeps its points.
     pub fn renumbered(self, new: impl Fn(Value) -> Value) -> Op {
         match self {
             Op::Constant(_) | Op::Input(_) | Op::Prepared(_) => self,
@@ -118,7 +118,7 @@ impl Op {
 /// A straight-line program.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Program {
-    /// What each value is, in an order in which it can be computed.
+    /// The operation of each value; arguments come before the operations that use them.
     pub ops: Vec<Op>,
     /// The results.
     pub outputs: Vec<Value>,
@@ -126,10 +126,10 @@ pub struct Program {
     pub curves: Vec<Curve<Value>>,
 }
 
-/// The programs of a model. [`qcar_model::About`] says what their outputs are.
+/// The programs of a model. [`qcar_model::About`] describes their outputs.
 ///
 /// `matrices`, `sensitivities` and `parameter_jacobian` read parameters as `Op::Input(Symbol::Parameter)`, and so does
-/// `prepare`; all others read what depends on parameters alone as `Op::Prepared`, which are the outputs of `prepare`.
+/// `prepare`; all others read values that depend on the parameters alone as `Op::Prepared`, the outputs of `prepare`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Programs {
     /// The constants of a parameter set.
@@ -146,7 +146,7 @@ pub struct Programs {
     pub parameter_jacobian: Program,
     /// The frequency response to each excitation; empty for a nonlinear model.
     pub responses: Vec<Response>,
-    /// What a rolling tyre changes, where a tyre can roll.
+    /// The programs of a rolling tyre; `None` if no tyre can roll.
     pub rolling: Option<Rolling>,
 }
 
@@ -164,8 +164,9 @@ pub struct Response {
 
 /// The programs of a model whose tyre rolls over a profile.
 ///
-/// They read the equivalent stretch and its rate as `Symbol::Stretch` and `Symbol::Rate` of the tyre's link, and (but
-/// for `contact_force`) the forces on the wheel as `Symbol::ContactForce`, counted along `Contact::axes`.
+/// They read the equivalent stretch and its rate as `Symbol::Stretch` and `Symbol::Rate` of the tyre's link.
+/// `derivative` and `outputs` also read the forces on the wheel as `Symbol::ContactForce`, in the order of
+/// `Contact::axes`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Rolling {
     /// One output: the resisting force of the tyre's law.

@@ -1,7 +1,7 @@
-//! Expressions to straight-line programs.
+//! From expressions to straight-line programs.
 //!
-//! A program holds what its outputs need and nothing else, each value once, arguments first, in the order in which the
-//! outputs ask for them. What depends on the parameters alone is left to `prepare`.
+//! A program contains only the values that its outputs need, each once, and arguments first, in the order in which the
+//! outputs use them. Values that depend on the parameters alone are computed by `prepare`.
 
 use qcar_model::About;
 
@@ -15,26 +15,26 @@ use crate::expr::{CurveId, Expr, Graph, Node, Symbol};
 use crate::hash::{HashMap, HashSet};
 use crate::program::{Op, Program, Programs, Response, Rolling, Value};
 
-/// A model compiled: all that its printers and its interpreter need.
+/// A compiled model: everything that its printers and its interpreter need.
 #[derive(Clone, Debug)]
 pub struct Compiled {
-    /// The model as it was written.
+    /// The checked model.
     pub model: Checked,
-    /// Where the expressions of `motion` and `linear` live: the graph of the model, grown.
+    /// The graph of the model, extended by the expressions of `motion` and `linear`.
     pub graph: Graph,
     /// Its equations.
     pub motion: Motion,
     /// Its matrices.
     pub linear: Linear,
-    /// Names, places and sparsity.
+    /// Names, positions and sparsity.
     pub about: About,
-    /// Which symbols stand at those places.
+    /// The symbols at those positions.
     pub vectors: Vectors,
-    /// What computes it.
+    /// Its programs.
     pub programs: Programs,
 }
 
-/// The equations of a tyre that rolls, with their tyre.
+/// The equations of motion with a rolling tyre, and the tyre.
 pub type RollingMotion = (Motion, RollingTyre);
 
 /// Schedules all programs of a model.
@@ -116,7 +116,7 @@ fn rolling(graph: &mut Graph, constants: &mut Constants, (motion, tyre): &Rollin
     }
 }
 
-/// What `prepare` computes, in its order.
+/// The values that `prepare` computes, in its order.
 #[derive(Default)]
 struct Constants {
     values: Vec<Expr>,
@@ -132,17 +132,17 @@ impl Constants {
     }
 }
 
-/// Writes one program.
+/// Builds one program.
 struct Writer<'a> {
     graph: &'a mut Graph,
-    /// Where what depends on the parameters alone goes; `None` to compute it here.
+    /// Receives the values that depend on the parameters alone; `None` to compute them in this program.
     constants: Option<&'a mut Constants>,
     program: Program,
     values: HashMap<Expr, Value>,
     powers: HashMap<(Expr, i32), Value>,
     curves: HashMap<CurveId, u32>,
     fixed: HashMap<Expr, bool>,
-    /// Divisors that serve more than once, so that their reciprocal pays.
+    /// Divisors that are used more than once, so that a reciprocal saves divisions.
     shared_divisors: HashSet<Expr>,
 }
 
@@ -173,12 +173,12 @@ impl<'a> Writer<'a> {
         self.program
     }
 
-    /// True where a value is left to `prepare`.
+    /// True if `prepare` computes the value.
     fn is_prepared(&mut self, e: Expr) -> bool {
         self.constants.is_some() && self.is_fixed(e) && self.graph.as_constant(e).is_none()
     }
 
-    /// True where a value depends on the parameters alone.
+    /// True if a value depends on the parameters alone.
     fn is_fixed(&mut self, e: Expr) -> bool {
         if let Some(&known) = self.fixed.get(&e) {
             return known;
@@ -194,7 +194,8 @@ impl<'a> Writer<'a> {
         fixed
     }
 
-    /// Counts by how many quotients each divisor is used; a fixed one has its reciprocal prepared.
+    /// Finds the divisors of more than one quotient. `prepare` computes the reciprocals of those that depend on the
+    /// parameters alone.
     fn share_divisors(&mut self, outputs: &[Expr]) {
         let mut seen = HashSet::default();
         let mut divisors = HashSet::default();
@@ -251,7 +252,7 @@ impl<'a> Writer<'a> {
         self.push(op)
     }
 
-    /// The place of a curve in the program.
+    /// The position of a curve in the program.
     fn curve(&mut self, id: CurveId) -> u32 {
         if let Some(&known) = self.curves.get(&id) {
             return known;

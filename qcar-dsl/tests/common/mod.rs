@@ -7,7 +7,7 @@ pub mod reference;
 use qcar_dsl::check::Checked;
 use qcar_dsl::expr::{CoordinateId, Expr, Graph, LinkId, Symbol};
 use qcar_dsl::model::{
-    Coordinate, CoordinateKind, Declared, Default, Direction, ForceInput, Gravity, Inner, Law, Link, Model, Output,
+    Coordinate, CoordinateKind, Declaration, Default, Direction, ForceInput, Gravity, Inner, Law, Link, Model, Output,
     Parameter, Point, Quantity, Signal, Term,
 };
 use qcar_dsl::source::{Source, Span};
@@ -48,8 +48,8 @@ pub struct Builder {
     pub model: Model,
 }
 
-fn declared() -> Declared {
-    Declared {
+fn declared() -> Declaration {
+    Declaration {
         span: Span::default(),
         line: String::new(),
     }

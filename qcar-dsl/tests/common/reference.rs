@@ -3,7 +3,7 @@
 //! Over complex numbers the same code gives derivatives by a complex step, exact to rounding.
 
 use nalgebra::{Complex, ComplexField, DMatrix, DVector};
-use qcar_dsl::derive::vectors::Source;
+use qcar_dsl::derive::vectors::ExcitationSource;
 use qcar_dsl::expr::{Expr, Graph, LinkId, Node, Symbol};
 use qcar_dsl::model::{CoordinateKind, Model, Quantity, Signal, Term};
 
@@ -314,7 +314,7 @@ pub fn response(
     model: &Model,
     r: &Reference<f64>,
     d: &Reference<f64>,
-    source: Source,
+    source: ExcitationSource,
     omega: f64,
 ) -> Vec<(Complex<f64>, Complex<f64>)> {
     let (n, z) = (model.coordinates.len(), r.inner.len());
@@ -341,13 +341,13 @@ pub fn response(
         }
     }
     match source {
-        Source::Motion(c) => right[c.0 as usize] = Complex::new(1.0, 0.0),
-        Source::Force(i) => right = load(model, r, i as usize),
+        ExcitationSource::Motion(c) => right[c.0 as usize] = Complex::new(1.0, 0.0),
+        ExcitationSource::Force(i) => right = load(model, r, i as usize),
     }
     let lu = held.lu();
     let x = lu.solve(&right).unwrap();
     let mut change = -(da * &x);
-    if let Source::Force(i) = source {
+    if let ExcitationSource::Force(i) = source {
         change += load(model, d, i as usize);
     }
     for (c, coordinate) in model.coordinates.iter().enumerate() {
@@ -386,8 +386,8 @@ pub fn response(
         Signal::LinkForce(l) => {
             let l = l.0 as usize;
             let by_input = |r: &Reference<f64>| match source {
-                Source::Force(i) => r.force_by_input[(l, i as usize)],
-                Source::Motion(_) => 0.0,
+                ExcitationSource::Force(i) => r.force_by_input[(l, i as usize)],
+                ExcitationSource::Motion(_) => 0.0,
             };
             let value = force(r, l).dot(&x) + by_input(r);
             (value, force(r, l).dot(&dx) + force(d, l).dot(&x) + by_input(d))

@@ -103,7 +103,7 @@ impl ForceTable {
         }
         if let Some(&row) = turned.first() {
             let found = format!(
-                "a force of {} N at {} m/s, which supports the motion, and {} such rows in all",
+                "a force of {} N at {} m/s, which acts in the direction of the motion, and {} such rows in all",
                 self.force[row],
                 self.velocity[row],
                 turned.len()

@@ -1,4 +1,4 @@
-//! What is measured of a parameter set: of its rides, its transmissibilities and its modes.
+//! Metrics of a parameter set: of its rides, its transmissibilities and its modes.
 
 use thiserror::Error;
 
@@ -12,7 +12,7 @@ use crate::response::resonance;
 use crate::roles::{RoleError, Roles};
 use crate::simulate::{Kept, Ride};
 
-/// A kind of numbers.
+/// A group of metrics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Metric {
     /// Largest acceleration of each mass and axis in the impact.
@@ -28,18 +28,18 @@ pub enum Metric {
 }
 
 impl Metric {
-    /// Whether it is measured of rides.
+    /// True for metrics of rides.
     pub fn of_rides(self) -> bool {
         matches!(self, Self::Peak | Self::AfterShake | Self::Dose)
     }
 }
 
-/// What a number is.
+/// Name and unit of a metric.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
-    /// Such as `body_z.peak`.
+    /// For example `body_z.peak`.
     pub name: String,
-    /// SI.
+    /// SI unit.
     pub unit: String,
 }
 
@@ -48,17 +48,17 @@ pub struct Column {
 pub struct Ratio {
     /// Name.
     pub name: String,
-    /// Of the ratio.
+    /// Unit of the ratio.
     pub unit: String,
-    /// What acts.
+    /// Position of the excitation in the model.
     pub excitation: usize,
-    /// Above the line.
+    /// The numerator.
     pub numerator: Signal,
-    /// Below the line.
+    /// The denominator.
     pub denominator: Signal,
 }
 
-/// Why a model has no such numbers.
+/// Reason why a model lacks the chosen metrics.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[expect(missing_docs, reason = "the message says it")]
 pub enum MetricsError {
@@ -70,29 +70,29 @@ pub enum MetricsError {
     NoAcceleration { model: String },
 }
 
-/// Everything that is measured, in the order of its columns.
+/// The chosen metrics of a model, in the order of their columns.
 pub struct Metrics<'a, M: ?Sized> {
     model: &'a M,
     chosen: Vec<Metric>,
     ratios: Vec<Ratio>,
     accelerations: Vec<Acceleration>,
-    /// The one that feels a cleat first.
+    /// Position of the acceleration that responds to a cleat first.
     first: usize,
 }
 
 struct Acceleration {
-    /// Its place among the outputs.
+    /// Position among the outputs.
     output: usize,
-    /// Such as `body_z`.
+    /// For example `body_z`.
     name: String,
     weighting: Weighting,
 }
 
 impl<'a, M: Model + ?Sized> Metrics<'a, M> {
-    /// What is `chosen` of a model.
+    /// The metrics of a model in the `chosen` groups.
     ///
     /// # Errors
-    /// Metrics of rides of a model that has no tyre or no acceleration.
+    /// Fails if metrics of rides are chosen for a model without a tyre or without an acceleration among its outputs.
     pub fn new(model: &'a M, chosen: &[Metric], ratios: Vec<Ratio>) -> Result<Self, MetricsError> {
         let about = model.about();
         let rides = chosen.iter().any(|metric| metric.of_rides());
@@ -116,7 +116,7 @@ impl<'a, M: Model + ?Sized> Metrics<'a, M> {
         })
     }
 
-    /// What is measured of a parameter set alone.
+    /// Columns of the metrics of a parameter set, which need no ride.
     pub fn columns_of_sets(&self) -> Vec<Column> {
         let of = |metric: &Metric| match metric {
             Metric::Transmissibility => self.ratios.iter().flat_map(Ratio::columns).collect(),
@@ -126,7 +126,7 @@ impl<'a, M: Model + ?Sized> Metrics<'a, M> {
         self.chosen.iter().flat_map(of).collect()
     }
 
-    /// What is measured of each ride.
+    /// Columns of the metrics of each ride.
     pub fn columns_of_rides(&self) -> Vec<Column> {
         let of = |metric: &Metric| {
             let (what, unit) = match metric {
@@ -141,7 +141,7 @@ impl<'a, M: Model + ?Sized> Metrics<'a, M> {
         self.chosen.iter().flat_map(of).collect()
     }
 
-    /// The numbers of [`Metrics::columns_of_sets`]; NaN of a mode that does not vibrate.
+    /// The values of [`Metrics::columns_of_sets`]; NaN for a mode without oscillation.
     pub fn of_set(&self, values: &Values) -> Vec<f64> {
         let of = |metric: &Metric| match metric {
             Metric::Transmissibility => self.peaks(values),
@@ -151,7 +151,7 @@ impl<'a, M: Model + ?Sized> Metrics<'a, M> {
         self.chosen.iter().flat_map(of).collect()
     }
 
-    /// What has to be kept of a ride.
+    /// The signals of a ride that the metrics need.
     pub fn kept(&self) -> Kept {
         let is_measured = |output: usize| self.accelerations.iter().any(|own| own.output == output);
         Kept {
@@ -161,10 +161,10 @@ impl<'a, M: Model + ?Sized> Metrics<'a, M> {
         }
     }
 
-    /// The numbers of [`Metrics::columns_of_rides`], of a ride with samples at `rate` (Hz).
+    /// The values of [`Metrics::columns_of_rides`] for a ride with samples at `rate` (Hz).
     ///
     /// # Errors
-    /// A wheel that does not feel the cleat, or a ride that ends too early.
+    /// Fails if the wheel does not respond to the cleat, or if the ride ends too early.
     pub fn of_ride(&self, ride: &Ride, rate: f64) -> Result<Vec<f64>, CompareError> {
         let record = |own: &Acceleration| &ride.outputs[own.output];
         let Some(first) = self.accelerations.get(self.first) else {
@@ -184,7 +184,7 @@ impl<'a, M: Model + ?Sized> Metrics<'a, M> {
         Ok(self.chosen.iter().flat_map(of).collect())
     }
 
-    /// The dose of each acceleration; those with one weighting are weighted in step.
+    /// The vibration dose of each acceleration. Accelerations with the same weighting are filtered together.
     fn doses(&self, ride: &Ride, rate: f64) -> Vec<f64> {
         let mut doses = vec![0.0; self.accelerations.len()];
         for weighting in [Weighting::Wk, Weighting::Wd] {
@@ -199,7 +199,7 @@ impl<'a, M: Model + ?Sized> Metrics<'a, M> {
         doses
     }
 
-    /// The peak of each ratio, one response serving all that it drives.
+    /// Magnitude and frequency of the peak of each ratio. Ratios under one excitation share a response.
     fn peaks(&self, values: &Values) -> Vec<f64> {
         let mut surveys: Vec<(usize, Response<'_, M>)> = Vec::new();
         let mut found = Vec::new();
@@ -245,14 +245,14 @@ fn of_mode(number: usize) -> [Column; 2] {
     ]
 }
 
-/// No more vibrations than masses move, and half as many again as there are inner states.
+/// Largest number of modes: one for each mass that moves, and one for every two inner states.
 fn most_modes(about: &About) -> usize {
     let velocities = about.states.iter().filter(|state| state.kind == StateKind::Velocity);
     let inner = about.states.iter().filter(|state| state.kind == StateKind::Inner);
     velocities.count() + inner.count() / 2
 }
 
-/// The accelerations of masses, weighted as a seat passes them on along the axis of the tyre or across it.
+/// The accelerations of masses, with the weighting of a seat along the axis of the tyre or across it.
 fn accelerations(about: &About, vertical: &str) -> impl Iterator<Item = Acceleration> {
     let masses = |signal: &Signal| {
         let here = |mass: &&crate::model::Mass| mass.location == signal.location && mass.axis == signal.axis;

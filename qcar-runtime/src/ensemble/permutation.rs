@@ -42,8 +42,8 @@ mod tests {
         }
     }
 
-    /// Neighbours end far apart: a random permutation of n moves them apart by a third of n on average, here within 5 of its
-    /// standard errors (the distance of two random places has a standard deviation of n/√18).
+    /// Images of neighbours are far apart: their mean distance in a random permutation of n is n/3, here within 5
+    /// standard errors (the distance of two random positions has a standard deviation of n/√18).
     #[test]
     fn the_order_is_no_order() {
         let count = 10_000;

@@ -59,7 +59,7 @@ struct Set {
     impossible: Option<String>,
 }
 
-/// Number of rides that a thread gets at once: lanes are idle only while the last of them end.
+/// Number of rides that a thread gets at once; lanes are idle only while the last ones end.
 const TOGETHER: usize = 96;
 
 impl<M: Model + ?Sized> Ensemble<'_, M> {

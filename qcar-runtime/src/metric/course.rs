@@ -6,34 +6,34 @@ use crate::simulate::{Cleat, Drive, Standard};
 /// A road and how it is driven over.
 #[derive(Clone, Debug)]
 pub struct Course {
-    /// Of the run.
+    /// Name of the run.
     pub name: String,
-    /// A road and the speed at which it is driven.
+    /// The road.
     pub road: Road,
-    /// m/s.
+    /// Speed, m/s.
     pub speed: f64,
-    /// Hz.
+    /// Sample rate, Hz.
     pub sample_rate: f64,
     /// Number of samples, the first at t = 0.
     pub samples: usize,
-    /// True of a road with one obstacle, over which there is an impact and an after-shake.
+    /// True for a road with one obstacle, which causes an impact and an after-shake.
     pub obstacle: bool,
 }
 
 /// Default duration of a random road, s: enough for ten periods of a body on its springs.
 const DURATION: f64 = 8.0;
 const SAMPLE_RATE: f64 = 1000.0;
-/// Of the random road, m: it is level until the tyre is on it.
+/// Distance between points of the random road, m.
 const SPACING: f64 = 0.03;
 /// The default seed of a random road.
 pub const SEED: u64 = 1;
 
 impl Course {
-    /// A random road of ISO 8608 at a speed (m/s), for a duration (s) or eight seconds; with a name such as `iso_C_60kmh`,
-    /// `iso_C7_60kmh` of seed 7, or `iso_C_60kmh_20s` where the duration is given.
+    /// A random road of ISO 8608 at a speed (m/s), for a duration (s), by default eight seconds. Its name is
+    /// `iso_C_60kmh`, `iso_C7_60kmh` with seed 7, or `iso_C_60kmh_20s` with a given duration.
     ///
     /// # Errors
-    /// A speed that is too low for the road to rise from level.
+    /// Fails if the speed is so low that the run ends before the road has risen from flat.
     pub fn random(class: Class, seed: u64, speed: f64, duration: Option<f64>) -> Result<Self, RoadError> {
         let stated = driven(speed, duration);
         let duration = duration.unwrap_or(DURATION);
@@ -54,11 +54,11 @@ impl Course {
         })
     }
 
-    /// All of a road from its first point on at a speed (m/s), or for a duration (s) that ends no later; both join the name, as in
+    /// A road from its first point at a speed (m/s), to its end or for a duration (s). The name includes both, as in
     /// `belgian_50kmh` and `belgian_50kmh_20s`.
     ///
     /// # Errors
-    /// A road that ends before the duration does.
+    /// Fails if the road ends before the duration.
     pub fn along(name: &str, road: Road, speed: f64, duration: Option<f64>) -> Result<Self, RoadError> {
         let stated = driven(speed, duration);
         let [first, last] = road.extent();
@@ -81,7 +81,7 @@ impl Course {
     /// The runs of thesis table 3.3, with names such as `30kmh_20mm`.
     ///
     /// # Errors
-    /// None, as long as the shape of the cleat is a road.
+    /// Never fails if the shape of the cleat is a road.
     pub fn standard() -> Result<Vec<Self>, RoadError> {
         let course = |own: Standard| {
             let name = format!("{:.0}kmh_{:.0}mm", 3.6 * own.speed, 1e3 * own.height);
@@ -98,7 +98,7 @@ impl Course {
         Ok(Standard::all()?.into_iter().map(course).collect())
     }
 
-    /// A run as it was measured.
+    /// The course of a measured run.
     pub fn measured(cleat: &Cleat) -> Self {
         let drive = cleat.drive();
         Self {

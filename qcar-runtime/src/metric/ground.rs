@@ -1,4 +1,4 @@
-//! All metrics of a model: driven over courses, excited and left alone.
+//! All metrics of a model: of rides over courses, of transmissibilities and of modes.
 
 use std::collections::BTreeSet;
 
@@ -29,7 +29,7 @@ pub struct Ground<'a> {
     courses: Vec<Course>,
     metrics: Vec<Metric>,
     readings: Vec<Reading>,
-    /// Place of the output that feels an obstacle first.
+    /// Position of the output that responds to an obstacle first.
     wheel: Option<usize>,
     impossible: Option<Box<Impossible<'a>>>,
     settings: Settings,
@@ -41,31 +41,31 @@ type Impossible<'a> = dyn Fn(&[f64]) -> Option<String> + Send + Sync + 'a;
 /// Accelerations of a ride.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
-    /// When the wheel feels the obstacle, s.
+    /// Time at which the wheel reaches the obstacle, s.
     pub onset: f64,
-    /// Of each mass, m/s².
+    /// Acceleration of each mass, m/s².
     pub accelerations: Vec<(Signal, Vec<f64>)>,
 }
 
 /// One metric on one run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
-    /// Place of the metric.
+    /// Position of the metric.
     pub metric: usize,
     /// Index of the course, for metrics of rides.
     pub course: Option<usize>,
 }
 
-/// Values, and how they change.
+/// Values of readings and their derivatives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slopes {
-    /// Of each reading.
+    /// The value of each reading.
     pub values: Vec<f64>,
-    /// For each reading its derivative along each direction.
+    /// For each reading, its derivative along each direction.
     pub slopes: Vec<Vec<f64>>,
 }
 
-/// Why a design has no value of a metric.
+/// Reason why a design has no value of a metric.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says it")]
 pub enum MetricError {
@@ -84,9 +84,9 @@ pub enum MetricError {
 }
 
 impl<'a> Ground<'a> {
-    /// A ground without metrics; [`Ground::choose`] chooses them.
+    /// A ground without readings; [`Ground::choose`] sets them.
     ///
-    /// `values` determine the number of vibrating modes.
+    /// `values` determine the number of modes.
     pub fn new(
         model: &'a dyn Model,
         values: &Values,
@@ -120,7 +120,7 @@ impl<'a> Ground<'a> {
         self
     }
 
-    /// Measures no axle for whose parameters there is a reason that it cannot be.
+    /// Refuses parameter sets for which `impossible` gives a reason.
     #[must_use]
     pub fn refusing(mut self, impossible: impl Fn(&[f64]) -> Option<String> + Send + Sync + 'a) -> Self {
         self.impossible = Some(Box::new(impossible));
@@ -137,17 +137,17 @@ impl<'a> Ground<'a> {
         &self.courses
     }
 
-    /// The model's facts, with the output that was added.
+    /// The description of the model, including the added output.
     pub fn about(&self) -> &About {
         self.model.about()
     }
 
-    /// The readings, in the order of all results.
+    /// The readings, in the order of the results.
     pub fn readings(&self) -> &[Reading] {
         &self.readings
     }
 
-    /// Measures these from now on.
+    /// Sets the readings to measure.
     pub fn choose(&mut self, readings: Vec<Reading>) {
         self.readings = readings;
     }
@@ -174,16 +174,16 @@ impl<'a> Ground<'a> {
     /// The value of each reading.
     ///
     /// # Errors
-    /// What cannot be, cannot be ridden, or is not there with these parameters.
+    /// Fails if the parameters are refused, if a ride fails, or if a metric has no value with these parameters.
     pub fn measure(&self, values: &Values) -> Result<Vec<f64>, MetricError> {
         Ok(self.measure_with(values, &[])?.values)
     }
 
-    /// The value of each reading, and its derivative along each direction of the parameters, which has an entry for every
-    /// parameter, zero or the same for those that are tied.
+    /// The value of each reading, and its derivative along each direction. A direction has an entry for every
+    /// parameter; the entry of a tied parameter is zero or that of its leader.
     ///
     /// # Errors
-    /// As [`Ground::measure`].
+    /// Fails as [`Ground::measure`] does.
     pub fn measure_with(&self, values: &Values, directions: &[Vec<f64>]) -> Result<Slopes, MetricError> {
         self.check_possible(values)?;
         let courses = self.ridden_courses();
@@ -200,7 +200,7 @@ impl<'a> Ground<'a> {
         self.read(values, &courses, ridden?, directions)
     }
 
-    /// [`Ground::measure`] of several designs, their rides abreast on this thread.
+    /// [`Ground::measure`] for several designs, whose rides are simulated side by side on this thread.
     pub fn measure_all(&self, designs: &[Values]) -> Vec<Result<Vec<f64>, MetricError>> {
         let courses = self.ridden_courses();
         let possible: Vec<_> = designs.iter().map(|values| self.check_possible(values)).collect();
@@ -211,7 +211,7 @@ impl<'a> Ground<'a> {
         let mut ridden = self.drive_abreast(&runs).into_iter();
         let measured = designs.iter().zip(possible).map(|(values, possible)| {
             possible?;
-            // All of a design's rides are taken, also where one of them failed.
+            // Takes all rides of a design from the iterator, even if one of them failed.
             let own: Vec<_> = ridden.by_ref().take(courses.len()).collect();
             let own = own.into_iter().collect::<Result<_, _>>()?;
             Ok(self.read(values, &courses, own, &[])?.values)
@@ -279,7 +279,7 @@ impl<'a> Ground<'a> {
         found.into_iter().map(|own| own.expect("each ride ends")).collect()
     }
 
-    /// The outputs that readings need, and the one from which the onset of an impact is found.
+    /// The outputs that readings need, and the one that determines the onset of an impact.
     fn kept(&self) -> Kept {
         let is_kept = |output: usize| self.reads(output) || self.wheel == Some(output);
         let about = self.car_model().about();
@@ -317,7 +317,8 @@ impl<'a> Ground<'a> {
         })
     }
 
-    /// The place of the added output where nothing reads it: all others are rates of states, which a ride need not ask for.
+    /// The position of the added output if no reading uses it. All other outputs are rates of states, which cost
+    /// nothing.
     fn unasked(&self) -> Option<usize> {
         self.model.added().filter(|added| !self.reads(*added))
     }
@@ -349,7 +350,7 @@ impl<'a> Ground<'a> {
         })
     }
 
-    /// With nothing in the place of an output that was not asked for.
+    /// Inserts an empty signal for the added output if it was not simulated.
     fn with_added(&self, mut found: Tangent) -> Tangent {
         if let Some(added) = self.unasked() {
             let all = found.slopes.iter_mut().chain([&mut found.signals]);
@@ -361,7 +362,7 @@ impl<'a> Ground<'a> {
     /// Accelerations of each mass on a course.
     ///
     /// # Errors
-    /// As [`Ground::measure`].
+    /// Fails as [`Ground::measure`] does.
     pub fn trace(&self, values: &Values, course: usize) -> Result<Trace, MetricError> {
         let signals = self.drive(values, course, &[])?;
         let outputs = self.about().outputs.iter().zip(signals.values);
@@ -383,7 +384,7 @@ impl<'a> Ground<'a> {
     }
 }
 
-/// The output that feels an obstacle first: the acceleration of the wheel, else of the next mass.
+/// The output that responds to an obstacle first: the acceleration of the wheel, else that of the next mass.
 fn felt_first(about: &About, roles: &Roles) -> Option<usize> {
     let place = |mass: &str| {
         let signal = Signal {
@@ -399,7 +400,7 @@ fn felt_first(about: &About, roles: &Roles) -> Option<usize> {
 /// The results of a ride.
 struct Signals {
     values: Vec<Vec<f64>>,
-    /// For each direction.
+    /// For each direction, the derivative of each signal.
     slopes: Vec<Vec<Vec<f64>>>,
     impact: Impact,
     rate: f64,

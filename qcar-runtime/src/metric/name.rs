@@ -8,26 +8,26 @@ use crate::roles::Roles;
 /// A metric of comfort, load, travel or vibration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Metric {
-    /// `body_x.peak`.
+    /// For example `body_x.peak`.
     pub name: String,
-    /// SI.
+    /// SI unit.
     pub unit: &'static str,
     /// Description.
     pub doc: String,
-    /// How it is found.
+    /// How it is computed.
     pub what: What,
 }
 
 /// The subject of a metric.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum What {
-    /// A record of a ride: the output with this place, or after the outputs the force of the tyre.
+    /// A record of a ride: the output at this position; the position after the last output is the force of the tyre.
     Ride(usize, Measure),
-    /// The largest magnitude of the channel with this place.
+    /// The largest magnitude of the channel at this position.
     Peak(usize),
-    /// The frequency of that.
+    /// The frequency of the largest magnitude.
     PeakFrequency(usize),
-    /// Natural frequency of the vibration with this place, lowest first.
+    /// Natural frequency of the mode at this position, lowest first.
     Frequency(usize),
     /// Its damping ratio.
     Damping(usize),
@@ -40,27 +40,27 @@ pub enum Measure {
     Peak,
     /// Root mean square after the impact.
     AfterShake,
-    /// Root mean square of the whole record, weighted as ISO 2631-1 has it.
+    /// Root mean square of the whole record, weighted by ISO 2631-1.
     WeightedRms(Weighting),
-    /// Vibration dose value of the whole record, weighted alike.
+    /// Vibration dose value of the whole record, with the same weighting.
     Dose(Weighting),
-    /// Root mean square of what differs from the first sample, from the onset on.
+    /// Root mean square of the difference from the first sample, from the onset on.
     Variation,
-    /// Largest magnitude of that.
+    /// Largest magnitude of that difference.
     Excursion,
 }
 
 impl What {
-    /// True where the metric has a value for each run.
+    /// True if the metric has a value for each run.
     pub fn is_ridden(self) -> bool {
         matches!(self, What::Ride(..))
     }
 }
 
-/// All metrics of a model: those of rides where it has a tyre to roll on.
+/// All metrics of a model; those of rides only if it has a tyre that can roll.
 ///
-/// Outputs have the places that they have in a model that is [watched](super::Ground); `vibrations` is how many modes it has.
-pub fn metrics(about: &About, vibrations: usize) -> Vec<Metric> {
+/// Positions of outputs include the output that a [ground](super::Ground) adds; `modes` is the number of modes.
+pub fn metrics(about: &About, modes: usize) -> Vec<Metric> {
     let mut all = Vec::new();
     if let Ok(roles) = Roles::of(about, &RoleNames::default()) {
         all.extend(of_accelerations(about));
@@ -85,7 +85,7 @@ pub fn metrics(about: &About, vibrations: usize) -> Vec<Metric> {
         }
     }
     all.extend(of_channels(about));
-    all.extend((0..vibrations).flat_map(of_vibration));
+    all.extend((0..modes).flat_map(of_vibration));
     all
 }
 

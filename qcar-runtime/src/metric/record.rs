@@ -19,8 +19,8 @@ pub(super) struct Impact {
 const ONSET_SHARE: f64 = 0.1;
 
 impl Impact {
-    /// From the vertical acceleration of the wheel at `rate` (Hz); none where the wheel never goes up, or where the record
-    /// ends with the impact.
+    /// The impact in the vertical acceleration of the wheel at `rate` (Hz); `None` if the acceleration is never
+    /// positive, or if the record ends with the impact.
     pub fn of(wheel: &[f64], rate: f64) -> Option<Self> {
         let windows = Windows::default();
         let height = wheel.iter().copied().fold(0.0, f64::max);
@@ -34,7 +34,7 @@ impl Impact {
 }
 
 impl Impact {
-    /// All of a record of so many samples, that has no impact.
+    /// The whole of a record of `samples` samples without an impact.
     pub fn none(samples: usize) -> Self {
         Self {
             onset: 0,
@@ -44,7 +44,7 @@ impl Impact {
     }
 }
 
-/// A record as a metric uses it: filtered, and cut.
+/// A record as a metric uses it: filtered and cut.
 pub(super) struct Seen {
     measure: Measure,
     samples: Vec<f64>,
@@ -52,7 +52,7 @@ pub(super) struct Seen {
 }
 
 impl Seen {
-    /// Of a record at `rate` (Hz).
+    /// Filters and cuts a record at `rate` (Hz).
     pub fn new(measure: Measure, record: &[f64], rate: f64, impact: &Impact) -> Self {
         Self {
             measure,
@@ -71,7 +71,7 @@ impl Seen {
         }
     }
 
-    /// The derivative of the measure, for that of the record.
+    /// The derivative of the measure, given that of the record.
     pub fn slope(&self, slope: &[f64], impact: &Impact) -> f64 {
         let slope = seen(self.measure, slope, self.rate, impact);
         let pairs = || self.samples.iter().zip(&slope);
@@ -90,7 +90,7 @@ impl Seen {
     }
 }
 
-/// What a metric uses is linear in the record, so its derivative uses the derivative of the record in the same way.
+/// Filters and cuts a record. Both are linear, so the derivative of a record is treated in the same way.
 fn seen(measure: Measure, record: &[f64], rate: f64, impact: &Impact) -> Vec<f64> {
     match measure {
         Measure::Peak => record[impact.onset..impact.end].to_vec(),

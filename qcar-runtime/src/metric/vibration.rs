@@ -7,13 +7,13 @@ use crate::matrices::sensitivities_at_rest;
 use crate::model::{Matrix, Model};
 use crate::modes::{dynamics, eigenvector, vibrations};
 
-/// A vibration: `[frequency in Hz, damping ratio]`, and the same for their derivative along each direction.
+/// A mode: its `[frequency in Hz, damping ratio]`, and the derivatives of both along each direction.
 pub(super) struct Vibration {
     pub value: [f64; 2],
     pub slopes: Vec<[f64; 2]>,
 }
 
-/// The vibrations of a model, lowest frequency first, and how they change along directions of the parameters.
+/// The modes of a model, lowest frequency first, with their derivatives along directions of the parameters.
 ///
 /// An eigenvalue moves by `wᵀ dA v / wᵀ v`, with its right and left vectors (Fox and Kapoor, AIAA J. 6, 1968).
 pub(super) fn of(model: &dyn Model, p: &[f64], directions: &[Vec<f64>]) -> Vec<Vibration> {
@@ -37,7 +37,7 @@ pub(super) fn of(model: &dyn Model, p: &[f64], directions: &[Vec<f64>]) -> Vec<V
     vibrations(&a).into_iter().map(vibration).collect()
 }
 
-/// How frequency and damping ratio change with their eigenvalue.
+/// Derivatives of frequency and damping ratio, given that of the eigenvalue.
 fn slope(root: Complex<f64>, moved: Complex<f64>) -> [f64; 2] {
     let size = root.norm();
     let grown = (root.conj() * moved).re / size;

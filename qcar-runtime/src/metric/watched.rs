@@ -8,20 +8,20 @@ use crate::model::{
 };
 use crate::roles::{Roles, state};
 
-/// The output that is added.
+/// Name of the added output.
 pub const TRAVEL: &str = "suspension_travel";
 
-/// A model with one output more where its structure tells which masses are its wheel and its body: how much higher the
-/// wheel is over the body than at rest, m.
+/// A model with one output more: the height of the wheel over the body relative to rest, m. It is not added if the
+/// structure of the model does not determine wheel and body.
 pub struct Watched<'a> {
     inner: &'a dyn Model,
     about: About,
-    /// Places of the positions of wheel and body.
+    /// Indices of the states that are the positions of wheel and body.
     travel: Option<[usize; 2]>,
 }
 
 impl<'a> Watched<'a> {
-    /// Watches a model.
+    /// Adds the output to a model.
     pub fn new(inner: &'a dyn Model, names: &RoleNames) -> Self {
         let mut about = inner.about().clone();
         let travel = travel(&about, names);
@@ -44,7 +44,7 @@ impl<'a> Watched<'a> {
         Self { inner, about, travel }
     }
 
-    /// The place of the output that is added.
+    /// Position of the added output; `None` without one.
     pub fn added(&self) -> Option<usize> {
         self.travel.map(|_| self.own())
     }

@@ -5,7 +5,7 @@
 use crate::model::{About, Entry, InputKind, Matrix, Model, Quantity, ResponseLayout, ResponseMut};
 use nalgebra::{Complex, DMatrix, DVector};
 
-/// Where a nonlinear model is linearised.
+/// The point at which a nonlinear model is linearised.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OperatingPoint {
     /// States.
@@ -24,7 +24,7 @@ impl OperatingPoint {
     }
 }
 
-/// Every output responds, to every parameter: what is zero is found by computing it.
+/// A layout in which every output responds to every parameter: zeros are not known in advance.
 pub(super) fn layout(about: &About) -> ResponseLayout {
     let outputs = 0..about.outputs.len() as u16;
     let parameters = 0..about.parameters.len() as u16;
@@ -70,11 +70,11 @@ pub(super) fn response<M: Model + ?Sized>(
 
 /// The solution at one frequency.
 struct Line {
-    /// What each input is for a unit excitation.
+    /// Amplitude of each input for a unit excitation.
     input: Vec<Complex<f64>>,
     /// The states.
     x: DVector<Complex<f64>>,
-    /// How each output would respond to a rate of each state: `C (jω − A)⁻¹`.
+    /// Response of each output to a rate of each state: `C (jω − A)⁻¹`.
     reach: DMatrix<Complex<f64>>,
     /// The outputs.
     h: DVector<Complex<f64>>,

@@ -1,7 +1,8 @@
 //! Ratios as logarithms, for the fit.
 //!
-//! A magnitude in dB and a phase are the two parts of `ln T`, and `ln (N/D) = ln N − ln D`: each signal is taken to its
-//! logarithm once, however many channels it belongs to, and a channel is a difference. So are the derivatives.
+//! A magnitude in dB and a phase are the two parts of `ln T`, and `ln (N/D) = ln N − ln D`: the logarithm of each
+//! signal is computed once, however many channels use it. A channel is a difference of two logarithms, and its
+//! derivatives are the differences of theirs.
 
 use super::Response;
 use super::parameters::Values;
@@ -15,9 +16,9 @@ pub struct Logarithms {
     columns: usize,
     /// For each term: (column, entry of the response's Jacobian).
     sources: Vec<Vec<(usize, usize)>>,
-    /// Powers of jω never change: for each term `k ln ω`.
+    /// For each term the logarithm of its power of jω, `k ln ω`, which depends on no parameter.
     offset: Vec<Vec<f64>>,
-    /// `1/N` of the term at hand, so that its derivatives need no division.
+    /// `1/N` of the current term, so that its derivatives need no division.
     reciprocal: (Vec<f64>, Vec<f64>),
     lines: usize,
     magnitude: Vec<f64>,
@@ -27,7 +28,7 @@ pub struct Logarithms {
 }
 
 impl Logarithms {
-    /// Prepares for `terms` and for the parameters `free`, each with those tied to it.
+    /// Prepares for `terms` and for derivatives along the parameters `free`, each together with those tied to it.
     pub fn new<M: Model + ?Sized>(
         response: &Response<'_, M>,
         terms: Vec<Term>,

@@ -1,4 +1,4 @@
-//! From what is given to a value for every parameter of the model.
+//! A value for every parameter of a model, from given values, vehicle data and defaults.
 
 use crate::error::{Place, Problem};
 use crate::model::{About, Clock, Default};
@@ -7,30 +7,30 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use thiserror::Error;
 
-/// A value for every parameter, and which of them move together.
+/// A value for every parameter, and the ties between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Values {
     p: Vec<f64>,
-    /// For each parameter the one that it takes its value from: itself, unless its default ties it.
+    /// For each parameter the one whose value it takes: itself, unless its default ties it to another.
     leader: Vec<usize>,
-    /// Those that are the time since a run began.
+    /// Clock parameters, which are the time since the start of a run.
     clocks: Vec<(usize, Clock)>,
 }
 
-/// Why a parameter has no value.
+/// Reason why a parameter has no value.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum ParameterError {
     /// The model has no such parameter.
     #[error("model `{model}` has no parameter `{name}`; {}", unknown_remedy(.nearest))]
     Unknown {
-        /// As given.
+        /// As given by the user.
         name: String,
         /// The model's name.
         model: String,
         /// The model's parameter with the most similar name.
         nearest: Option<String>,
     },
-    /// Nobody gives the parameter a value.
+    /// The parameter has neither a value nor a default.
     #[error("model `{model}` needs `{name}` ({doc}), which has no value and no default; give it one in {unit}")]
     Missing {
         /// The parameter.
@@ -39,7 +39,7 @@ pub enum ParameterError {
         model: String,
         /// Its unit.
         unit: String,
-        /// Its sentence.
+        /// Its description.
         doc: String,
     },
     /// The value is not a number.
@@ -47,20 +47,20 @@ pub enum ParameterError {
     NotFinite {
         /// The parameter.
         name: String,
-        /// As given.
+        /// As given by the user.
         value: f64,
     },
 }
 
 impl ParameterError {
-    /// The parameter that it is about.
+    /// The name of the parameter.
     pub fn name(&self) -> &str {
         match self {
             Self::Unknown { name, .. } | Self::Missing { name, .. } | Self::NotFinite { name, .. } => name,
         }
     }
 
-    /// The same as a problem of the file that gives the values.
+    /// Converts it to a problem of the file that gives the values.
     pub fn problem(&self, file: &Path) -> Problem {
         let (found, expected, remedy) = match self {
             Self::Unknown { model, nearest, .. } => (
@@ -93,12 +93,13 @@ fn unknown_remedy(nearest: &Option<String>) -> String {
 }
 
 impl Values {
-    /// Gives every parameter of the model its value: from `given`, else from `vehicle`, else from its default.
+    /// Takes the value of every parameter of the model from `given`, else from `vehicle`, else from its default.
     ///
-    /// All of `given` must belong to the model; `vehicle` may hold more, since it describes the car.
+    /// All names in `given` must be parameters of the model; `vehicle` may have others, since it describes the car.
     ///
     /// # Errors
-    /// Every parameter that the model lacks, that has no value, or whose value is not finite.
+    /// Fails with every name that is not a parameter of the model, and every parameter that has no value or whose value
+    /// is not finite.
     pub fn resolve(
         about: &About,
         given: &BTreeMap<String, f64>,
@@ -125,22 +126,22 @@ impl Values {
         }
     }
 
-    /// All values, in the model's order.
+    /// All values, in the order of the model.
     pub fn as_slice(&self) -> &[f64] {
         &self.p
     }
 
-    /// The parameter that this one takes its value from; itself unless it is tied.
+    /// The parameter whose value this one takes: itself unless it is tied.
     pub fn leader(&self, parameter: usize) -> usize {
         self.leader[parameter]
     }
 
-    /// True where something changes while a run goes on.
+    /// True if the model has clock parameters, so that it changes during a run.
     pub fn have_clocks(&self) -> bool {
         !self.clocks.is_empty()
     }
 
-    /// The same at a part of a run that takes so long (s).
+    /// The values at the fraction `part` of a run of the duration `length` (s).
     pub fn at_part(&self, part: f64, length: f64) -> Self {
         let mut then = self.clone();
         for &(place, clock) in &self.clocks {
@@ -162,10 +163,10 @@ impl Values {
     }
 }
 
-/// Follows ties up to a parameter that is stated or has a default of its own.
+/// Follows ties up to a parameter that is given or has a default of its own.
 fn leader(about: &About, stated: &[Option<f64>], parameter: usize) -> usize {
     let mut at = parameter;
-    // As many steps as there are parameters end every chain, and every circle too.
+    // After as many steps as there are parameters, every chain has ended, unless it is circular.
     for _ in 0..stated.len() {
         match about.parameters[at].default {
             Default::Same(other) if stated[at].is_none() => at = usize::from(other),

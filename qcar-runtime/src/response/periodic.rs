@@ -30,7 +30,7 @@ use basis::Basis;
 pub struct Periodic<'m> {
     model: &'m dyn Model,
     excitation: usize,
-    /// The states that move at all.
+    /// The states that depend on the excitation.
     states: Vec<usize>,
     basis: Arc<Basis>,
 }
@@ -38,43 +38,43 @@ pub struct Periodic<'m> {
 /// A sine: `Re A exp(jωt)` of the excitation itself or one of its derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drive {
-    /// Hz.
+    /// Frequency, Hz.
     pub frequency: f64,
-    /// Amplitude of what is measured of the excitation.
+    /// Amplitude of the measured derivative of the excitation.
     pub amplitude: f64,
-    /// How many times the excitation has been differentiated where it is measured: 2 for an acceleration.
+    /// Order of the derivative of the excitation that is measured: 2 for an acceleration.
     pub power: i32,
 }
 
 /// A periodic response.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cycle {
-    /// Fourier coefficients of the states, where the next search may start.
+    /// Fourier coefficients of the states, from which the next search may start.
     pub coefficients: Vec<f64>,
-    /// False where the search gave up; the response is then that of its best point.
+    /// False if the search did not converge; the response is then that of its best point.
     pub converged: bool,
-    /// The outputs that were asked for, in ascending order.
+    /// The requested outputs, in ascending order.
     outputs: Vec<usize>,
     /// Amplitudes of their harmonics, a column for each output, and after these for each of their derivatives.
     harmonics: DMatrix<Complex<f64>>,
 }
 
-/// Of outputs, by their places in `y`.
+/// Results for outputs, given by their positions in `y`.
 ///
 /// # Panics
-/// Where the output has not been asked for.
+/// If the output was not requested.
 impl Cycle {
     /// Amplitudes of the harmonics from 0, relative in phase to the excitation.
     pub fn output(&self, output: usize) -> &[Complex<f64>] {
         self.column(0, output)
     }
 
-    /// Their derivatives along a group of the parameters asked for.
+    /// Derivatives of these amplitudes along a group of parameters.
     pub fn slope(&self, group: usize, output: usize) -> &[Complex<f64>] {
         self.column(1 + group, output)
     }
 
-    /// Where there are such groups, their derivatives by the logarithm of the drive's amplitude.
+    /// Derivatives of these amplitudes by the logarithm of the drive's amplitude, if there are groups of parameters.
     pub fn louder(&self, output: usize) -> &[Complex<f64>] {
         self.column(self.harmonics.ncols() / self.outputs.len() - 1, output)
     }
@@ -98,10 +98,10 @@ impl<'m> Periodic<'m> {
         }
     }
 
-    /// The response of `outputs` (places in `y`) for the parameters `p`; `groups` are the parameters that move
-    /// together, along each of which to differentiate.
+    /// The response of `outputs` (positions in `y`) for the parameters `p`. It is differentiated along each of
+    /// `groups`, which are parameters that change together.
     ///
-    /// Searches from `start`, or from rest; where that fails, by way of smaller amplitudes.
+    /// Searches from `start`, or from rest; if that fails, through a series of smaller amplitudes.
     pub fn cycle(
         &self,
         p: &[f64],
@@ -113,7 +113,7 @@ impl<'m> Periodic<'m> {
         self.cycle_of(&mut self.balance(p), drive, &each_once(outputs), groups, start)
     }
 
-    /// The same of a balance, whatever it was driven by before.
+    /// The same with an existing balance, which may have had another drive before.
     fn cycle_of(
         &self,
         balance: &mut Balance,
@@ -141,10 +141,11 @@ impl<'m> Periodic<'m> {
         }
     }
 
-    /// The responses to drives of increasing frequency, each searched for from that above it.
+    /// The responses to drives of increasing frequency. The search for each starts from the response at the next higher
+    /// frequency.
     ///
-    /// At high frequencies masses hold still and laws hardly bend; from there the search keeps its footing all the way
-    /// down, where it would often fail from rest.
+    /// At high frequencies masses hardly move and laws are nearly linear, so the search converges there and continues
+    /// downwards. From rest, it would often fail at low frequencies.
     pub fn walk(&self, p: &[f64], drives: &[Drive], outputs: &[usize], groups: &[Vec<usize>]) -> Vec<Cycle> {
         let (mut balance, outputs) = (self.balance(p), each_once(outputs));
         let mut cycles: Vec<Cycle> = Vec::with_capacity(drives.len());
@@ -157,7 +158,7 @@ impl<'m> Periodic<'m> {
         cycles
     }
 
-    /// From a small amplitude, where every smooth law is linear, up to the one that is wanted.
+    /// Increases the amplitude from a small one, at which every smooth law is linear, to the required one.
     fn climb(&self, balance: &mut Balance, drive: &Drive, rest: &[f64]) -> (Vec<f64>, bool) {
         const STEPS: i32 = 12;
         const RATIO: f64 = 2.0;
@@ -165,7 +166,7 @@ impl<'m> Periodic<'m> {
         let mut converged = false;
         for step in (0..=STEPS).rev() {
             let amplitude = drive.amplitude * RATIO.powi(-step);
-            // A larger response is more of the same, to first order.
+            // To first order, the response grows with the amplitude.
             x.iter_mut().for_each(|x| *x *= RATIO);
             self.drive(balance, &Drive { amplitude, ..*drive });
             (x, converged) = balance.solve(&x);
@@ -201,7 +202,7 @@ impl<'m> Periodic<'m> {
     }
 }
 
-/// In ascending order, however often each is asked for.
+/// The requested outputs in ascending order, without duplicates.
 fn each_once(outputs: &[usize]) -> Vec<usize> {
     BTreeSet::from_iter(outputs).into_iter().copied().collect()
 }
@@ -214,7 +215,7 @@ fn moved(model: &dyn Model, excitation: usize) -> Vec<usize> {
         InputKind::Gravity => false,
     };
     let mut moves = vec![false; about.states.len()];
-    // As many rounds as there are states reach whatever can be reached.
+    // After as many rounds as there are states, all dependent states are found.
     for _ in 0..=about.states.len() {
         for entry in about.matrices.iter() {
             let from = match entry.matrix {

@@ -13,14 +13,15 @@ use nalgebra::Complex;
 pub struct Ratio {
     /// A value for each frequency.
     pub value: Vec<Complex<f64>>,
-    /// For each parameter of the model that is seen and leads its ties: its place, and a derivative for each frequency.
+    /// Position of each parameter on which the ratio depends and that is not tied to another, with a derivative for
+    /// each frequency.
     pub jacobian: Vec<(usize, Vec<Complex<f64>>)>,
 }
 
 /// The ratio of two signals when `excitation` alone acts, at `frequency` (Hz, above zero).
 ///
 /// # Errors
-/// Where the model cannot give one of the signals.
+/// Fails if the model cannot give one of the signals.
 pub fn ratio<M: Model + ?Sized>(
     model: &M,
     values: &Values,
@@ -34,10 +35,10 @@ pub fn ratio<M: Model + ?Sized>(
     between(&response, values, numerator, denominator)
 }
 
-/// The ratio of two signals of a response that has been evaluated; without derivatives where it has none.
+/// The ratio of two signals of an evaluated response; without derivatives if the response has none.
 ///
 /// # Errors
-/// As [`ratio`].
+/// Fails as [`ratio`] does.
 pub fn between<M: Model + ?Sized>(
     response: &Response<'_, M>,
     values: &Values,
@@ -76,8 +77,8 @@ fn signal<M: Model + ?Sized>(response: &Response<'_, M>, term: Term) -> Vec<Comp
     differentiate(values, term.power, response.omega())
 }
 
-/// The derivatives of a signal, each along a parameter that leads its ties and all that are tied to it. Parameters on which it does not
-/// depend are left out.
+/// The derivatives of a signal, each along a leading parameter together with those tied to it. Parameters on which the
+/// signal does not depend are left out.
 fn slopes<M: Model + ?Sized>(
     response: &Response<'_, M>,
     term: Term,

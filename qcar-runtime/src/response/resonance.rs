@@ -1,4 +1,4 @@
-//! The largest magnitude of a ratio over frequency, where it stands, and how both change.
+//! The largest magnitude of a ratio over frequency, its frequency, and the derivatives of both.
 
 use nalgebra::Complex;
 
@@ -7,28 +7,30 @@ use super::parameters::Values;
 use super::ratio::{Ratio, between};
 use crate::model::{Model, Signal};
 
-/// `[magnitude, frequency in Hz]`, and their derivatives by the parameters that lead their ties, by their places.
+/// A peak, `[magnitude, frequency in Hz]`, and the derivatives of both by the leading parameters, with the positions of
+/// these.
 pub(crate) struct Resonance {
     pub value: [f64; 2],
     pub slopes: Vec<(usize, [f64; 2])>,
 }
 
-/// Where peaks are looked for, Hz: what a body and its wheel do.
+/// Band in which peaks are searched, Hz: that of body and wheel modes.
 const BAND: [f64; 2] = [0.5, 50.0];
-/// Lines there: closer than the width of a peak of 1 % damping.
+/// Number of lines in the band: closer than the width of a peak with a damping ratio of 0.01.
 const LINES: usize = 340;
-/// Lines of each further look between the neighbours of the largest, and how many looks there are.
+/// Number of lines in each refinement between the neighbours of the largest, and number of refinements.
 const CLOSER: usize = 9;
 const LOOKS: usize = 6;
 
-/// The response over the whole band, from which all ratios under one excitation are looked at closer.
+/// The response over the whole band, from which the search for the peak of any ratio under this excitation starts.
 pub(crate) fn survey<'m, M: Model + ?Sized>(model: &'m M, values: &Values, excitation: usize) -> Response<'m, M> {
     let mut response = Response::new(model, excitation, &spaced(BAND, LINES));
     response.evaluate_values(values.as_slice());
     response
 }
 
-/// The peak of a ratio; none where the model cannot give one of its signals. Without slopes unless they are wanted.
+/// The peak of a ratio; `None` if the model cannot give one of its signals. It has derivatives only if they are
+/// `wanted`.
 pub(crate) fn highest<M: Model + ?Sized>(
     survey: &Response<'_, M>,
     values: &Values,
@@ -53,7 +55,8 @@ pub(crate) fn highest<M: Model + ?Sized>(
         band = about_largest(&frequency, &value)?;
     }
     let at = (band[0] * band[1]).sqrt();
-    // Far enough for the second derivative of the magnitude, near enough for it to be that at the peak.
+    // Large enough for an accurate second derivative of the magnitude, and small enough that this is the one at the
+    // peak.
     let step = 3e-5 * at;
     let near = |at: f64, jacobian: bool| ratio(&[at - step, at, at + step], jacobian);
     let shape = |near: &Ratio| {
@@ -65,8 +68,8 @@ pub(crate) fn highest<M: Model + ?Sized>(
     };
     let [rise, bend] = shape(&near(at, false)?);
     let is_inside = at > BAND[0] * 1.001 && at < BAND[1] / 1.001 && bend < 0.0;
-    // Magnitudes about the peak are alike to rounding long before frequencies are: the rest of the way is that to the
-    // root of the derivative.
+    // Near the peak, magnitudes agree to rounding long before the frequency is accurate, so the last steps search for
+    // the root of the derivative.
     let at = if is_inside { at - rise / bend } else { at };
     let near = near(at, wanted)?;
     let [_, bend] = shape(&near);
@@ -90,7 +93,7 @@ pub(crate) fn highest<M: Model + ?Sized>(
     })
 }
 
-/// The frequencies beside that of the largest magnitude.
+/// The frequencies on both sides of the largest magnitude.
 fn about_largest(frequency: &[f64], value: &[Complex<f64>]) -> Option<[f64; 2]> {
     let largest = value.iter().map(|value| value.norm()).enumerate();
     let (at, _) = largest.max_by(|a, b| a.1.total_cmp(&b.1))?;

@@ -1,4 +1,4 @@
-//! Where a measured signal is found among the rows of a response.
+//! Position of a measured signal among the rows of a response.
 
 use crate::error::{Place, Problem};
 use crate::model::{About, Channel, Excitation, Quantity, ResponseLayout, Signal, SignalKind};
@@ -14,7 +14,7 @@ pub struct Term {
     pub power: i32,
 }
 
-/// Why a model cannot give a signal.
+/// Reason why a model cannot give a signal.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SignalError {
     /// There is no such mass, link or excitation.
@@ -22,23 +22,23 @@ pub enum SignalError {
         "model `{model}` has no `{location}` along {axis}; it has {known}. Choose a model that has it, or leave the channel out"
     )]
     Unknown {
-        /// What was asked for.
+        /// The requested location.
         location: String,
-        /// Along which axis.
+        /// The axis.
         axis: String,
         /// The model's name.
         model: String,
-        /// What there is instead.
+        /// The locations that exist.
         known: String,
     },
-    /// The place is there, but no output tells of this quantity.
+    /// The location exists, but no output gives this quantity.
     #[error(
         "model `{model}` does not output the {quantity} of `{location}`; add `output {location}.{quantity};` to it"
     )]
     NoOutput {
-        /// Where.
+        /// The location.
         location: String,
-        /// What.
+        /// The quantity.
         quantity: &'static str,
         /// The model's name.
         model: String,
@@ -48,11 +48,11 @@ pub enum SignalError {
         "in model `{model}`, `{location}` does not move along {axis} when `{excitation}` does; leave the channel out"
     )]
     Silent {
-        /// Where.
+        /// The location.
         location: String,
-        /// Along which axis.
+        /// The axis.
         axis: String,
-        /// What excites.
+        /// The excitation.
         excitation: String,
         /// The model's name.
         model: String,
@@ -60,7 +60,7 @@ pub enum SignalError {
 }
 
 impl SignalError {
-    /// The same as a problem of the file that asks for `channel`.
+    /// Converts it to a problem of the file that names `channel`.
     pub fn problem(&self, file: &Path, channel: &str) -> Problem {
         let (found, expected, remedy) = match self {
             Self::Unknown {
@@ -97,8 +97,8 @@ impl SignalError {
     }
 }
 
-/// The excitation that drives a channel: that which it is a ratio to, else the road along the same axis, else whatever
-/// acts there.
+/// The excitation of a channel: the one in its denominator, else the road along the same axis, else any excitation
+/// along it.
 pub fn driver(about: &About, channel: &Channel) -> Option<usize> {
     let below = &channel.denominator;
     let along = || {
@@ -118,7 +118,7 @@ pub fn driver(about: &About, channel: &Channel) -> Option<usize> {
 /// Finds `signal` in the response to `excitation`.
 ///
 /// # Errors
-/// Where the model has no such place, no such output, or no response of it.
+/// Fails if the model has no such location, no such output, or no response of it.
 pub fn locate(about: &About, layout: &ResponseLayout, excitation: usize, signal: &Signal) -> Result<Term, SignalError> {
     let source = &about.excitations[excitation];
     if let Some(power) = power_of_excitation(source, signal) {
@@ -136,10 +136,10 @@ pub fn locate(about: &About, layout: &ResponseLayout, excitation: usize, signal:
     }
 }
 
-/// The output that tells of `signal`, and the power of jω from it.
+/// The output from which `signal` follows, and the power of jω between them.
 ///
 /// # Errors
-/// Where the model has no such place, or no such output.
+/// Fails if the model has no such location, or no such output.
 pub fn output_of(about: &About, signal: &Signal) -> Result<(usize, i32), SignalError> {
     best_output(about, signal).ok_or_else(|| missing(about, signal))
 }
@@ -153,7 +153,7 @@ fn power_of_excitation(source: &Excitation, signal: &Signal) -> Option<i32> {
     }
 }
 
-/// The output with this signal, or that of another derivative of the same motion, and the power of jω from it.
+/// The output with this signal, or with another derivative of the same motion, and the power of jω between them.
 fn best_output(about: &About, signal: &Signal) -> Option<(usize, i32)> {
     let powers = about.outputs.iter().enumerate().filter_map(|(place, output)| {
         let here = output.signal.location == signal.location && output.signal.axis == signal.axis;
@@ -175,7 +175,7 @@ fn order(quantity: Quantity) -> i32 {
     }
 }
 
-/// What keeps a signal from being found: the model has no such place, or gives no such quantity of it.
+/// Reason why a signal is not found: the model has no such location, or no such quantity of it.
 pub fn missing(about: &About, signal: &Signal) -> SignalError {
     let model = about.name.to_string();
     let location = signal.location.to_string();

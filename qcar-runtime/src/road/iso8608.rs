@@ -89,7 +89,7 @@ impl Random {
         (0..BANDS)
             .map(|band| {
                 let (low, high) = (edge(band), edge(band + 1));
-                // The power of the whole band, ∫ G dn, whatever the place of the wave in it.
+                // The power of the whole band, ∫ G dn, wherever the wave number lies in it.
                 let power = self.class.reference_density() * REFERENCE_WAVE_NUMBER.powi(2) * (1.0 / low - 1.0 / high);
                 Wave {
                     amplitude: (2.0 * power).sqrt(),
@@ -107,10 +107,10 @@ struct Wave {
     phase: f64,
 }
 
-/// Number of points that are reached from one by rotating each sine: rounding then stays below 1e-14 of its amplitude.
+/// Number of points that are computed from one by rotating each sine; rounding then stays below 1e-14 of its amplitude.
 const TURNED: usize = 64;
 
-/// The sums of waves at so many points, a `spacing` apart.
+/// The sums of waves at `count` points with a distance of `spacing` (m).
 fn heights(waves: &[Wave], spacing: f64, count: usize) -> Vec<f64> {
     let mut heights = vec![0.0; count];
     for (block, heights) in heights.chunks_mut(TURNED).enumerate() {

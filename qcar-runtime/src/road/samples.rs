@@ -86,8 +86,8 @@ fn with_steps(points: &[[f64; 2]], slope: &[f64]) -> Result<Vec<[f64; 2]>, RoadE
 const MOST_CORNERS: usize = 50;
 const UNEVEN: f64 = 1.5;
 
-/// True of the corners of a profile of straight pieces, which no sampling has made: few, at uneven distances, with slopes
-/// that lead from each to the next within the resolution of such files.
+/// True if the points are corners of a profile of straight pieces instead of samples: few points at uneven distances,
+/// whose slopes lead from each to the next within the resolution of such files.
 pub(super) fn are_corners(x: &[f64], points: &[[f64; 2]], slope: &[f64]) -> bool {
     let lengths = || {
         x.windows(2)

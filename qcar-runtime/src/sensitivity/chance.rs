@@ -4,34 +4,35 @@ use crate::ensemble::Posterior;
 use crate::random::SplitMix;
 use crate::response::parameters::Values;
 
-/// What parameters may turn out as, by their places; each leads its ties.
+/// Distribution of the parameters. Parameters are given by their positions; none is tied to another.
 #[derive(Clone, Debug, Default)]
 pub struct Chance {
-    /// What a fit says, with the places of its estimates.
+    /// Posterior of a fit, with the positions of its estimates.
     pub fit: Option<(Posterior, Vec<usize>)>,
-    /// Parts that lie evenly within so much of their values.
+    /// Parameters with a tolerance: a uniform distribution within this fraction of their values.
     pub tolerances: Vec<(usize, f64)>,
-    /// What changes by so much of its value per kelvin,
+    /// Parameters that change with temperature, by this fraction of their values per kelvin.
     pub per_kelvin: Vec<(usize, f64)>,
-    /// and how far the temperature, the same for all, is evenly from that for which the values hold, K.
+    /// Range of the temperature relative to that of the values, K: a uniform distribution, the same temperature for all
+    /// parameters.
     pub temperatures: [f64; 2],
 }
 
 impl Chance {
-    /// Whether everything is known.
+    /// True if no parameter is uncertain.
     pub fn is_certain(&self) -> bool {
         self.fit.is_none() && self.tolerances.is_empty() && self.per_kelvin.is_empty()
     }
 
-    /// The parameters of the draw of a number about `values`, which need not be those of the fit: errors go with a parameter in parts
-    /// of its value.
+    /// The parameters of the draw with this number about `values`, which need not be those of the fit: errors are
+    /// relative to the value of a parameter.
     pub fn draw(&self, values: &Values, number: u64) -> Values {
         let mut drawn = values.clone();
         if let Some((posterior, places)) = &self.fit {
             let mut found = vec![0.0; places.len()];
             posterior.draw(number, FIT, &mut found);
             for ((&place, found), own) in places.iter().zip(found).zip(posterior.estimates()) {
-                // Nothing is a part of zero.
+                // A relative error of zero is not defined.
                 let own = if own.value == 0.0 {
                     found
                 } else {
@@ -54,6 +55,6 @@ impl Chance {
     }
 }
 
-/// Seeds of what is drawn.
+/// Seeds of the random numbers for errors of the fit and for tolerances.
 const FIT: u64 = 0x66_69_74;
 const PARTS: u64 = 0x70_61_72_74;

@@ -1,19 +1,19 @@
 //! Uncertainty of a metric: first-order propagation of the covariance of the parameters.
 //!
-//! All of it is relative to the parameters' own values, so that it holds wherever a design puts them.
+//! All uncertainties are relative to the values of the parameters, so that they hold for any design.
 
 use nalgebra::{DMatrix, DVector};
 
-/// What is not known of parameters, each in parts of its value.
+/// Uncertainty of parameters, relative to their values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Doubt {
-    /// By source, in the order of [`Source::ALL`].
+    /// Covariance of each source, in the order of [`Source::ALL`].
     covariances: [DMatrix<f64>; 3],
-    /// What the mean of the parameters differs from their values by.
+    /// Difference of the mean of each parameter from its value.
     shift: DVector<f64>,
 }
 
-/// Why a parameter is not known.
+/// Source of the uncertainty of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
     /// The errors of a fit.
@@ -24,17 +24,17 @@ pub enum Source {
     Temperature,
 }
 
-/// How sure a metric is.
+/// Uncertainty of a metric.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Interval {
-    /// By what its mean differs from its value.
+    /// Difference of its mean from its value.
     pub shift: f64,
     /// Standard deviation.
     pub deviation: f64,
-    /// The part of the variance that each parameter contributes, `g_k (C g)_k / gᵀ C g`; negative where its error is
-    /// balanced by that of another. Their sum is 1, or 0 where nothing is in doubt.
+    /// Share of each parameter in the variance, `g_k (C g)_k / gᵀ C g`; negative if its error partly cancels that of
+    /// another. The sum is 1, or 0 if nothing is uncertain.
     pub shares: Vec<f64>,
-    /// The part that each source contributes, in the order of [`Source::ALL`].
+    /// Share of each source in the variance, in the order of [`Source::ALL`].
     pub sources: [f64; 3],
 }
 
@@ -42,7 +42,7 @@ impl Source {
     /// All of them.
     pub const ALL: [Source; 3] = [Source::Fit, Source::Tolerance, Source::Temperature];
 
-    /// As results call it.
+    /// Its name in results.
     pub const fn name(self) -> &'static str {
         match self {
             Source::Fit => "fit",
@@ -53,7 +53,7 @@ impl Source {
 }
 
 impl Doubt {
-    /// None at all about `count` parameters.
+    /// No uncertainty of `count` parameters.
     pub fn none(count: usize) -> Self {
         Self {
             covariances: Source::ALL.map(|_| DMatrix::zeros(count, count)),
@@ -61,7 +61,7 @@ impl Doubt {
         }
     }
 
-    /// Adds standard errors of a fit with their correlations.
+    /// Adds relative standard errors of a fit with their correlations.
     pub fn add_errors(&mut self, errors: &[f64], correlation: impl Fn(usize, usize) -> f64) {
         let count = errors.len();
         let added = DMatrix::from_fn(count, count, |i, j| {
@@ -71,15 +71,15 @@ impl Doubt {
         self.covariances[Source::Fit as usize] += added;
     }
 
-    /// Adds tolerances: each part lies anywhere within so much of its value, as likely as not, whatever the others do.
+    /// Adds tolerances, relative to the values: independent uniform distributions of the parameters.
     pub fn add_tolerances(&mut self, tolerances: &[f64]) {
         for (k, tolerance) in tolerances.iter().enumerate() {
             self.covariances[Source::Tolerance as usize][(k, k)] += tolerance * tolerance / 3.0;
         }
     }
 
-    /// Adds a temperature that is the same for all parts and lies anywhere from `low` to `high` kelvin above that for which the
-    /// values hold, as likely as not; parameters change by so much of themselves per kelvin.
+    /// Adds a temperature that is the same for all parameters, uniform from `low` to `high` kelvin above that for which
+    /// the values hold. `per_kelvin` is the relative change of each parameter per kelvin.
     pub fn add_temperature(&mut self, per_kelvin: &[f64], [low, high]: [f64; 2]) {
         let drift = DVector::from_row_slice(per_kelvin);
         let variance = (high - low).powi(2) / 12.0;
@@ -87,7 +87,7 @@ impl Doubt {
         self.shift += 0.5 * (low + high) * drift;
     }
 
-    /// What that means for a metric with these derivatives, by parameters in parts of their values.
+    /// The resulting interval of a metric. `slopes` are its derivatives by relative changes of the parameters.
     pub fn of(&self, slopes: &[f64]) -> Interval {
         let slopes = DVector::from_row_slice(slopes);
         let moved = self.covariances.each_ref().map(|own| own * &slopes);
@@ -121,14 +121,14 @@ mod tests {
         assert!((sum.sources[0] - 16.0 / 19.0).abs() < 1e-12);
     }
 
-    /// One temperature for all: what it adds to one part it takes from another of the opposite drift.
+    /// One temperature for all parameters: its effects on two parameters with opposite drift cancel.
     #[test]
     fn a_temperature_moves_all_parts_together() {
         let mut doubt = Doubt::none(2);
         doubt.add_temperature(&[0.01, -0.02], [-30.0, 50.0]);
         assert!(doubt.of(&[2.0, 1.0]).deviation < 1e-12);
         let own = doubt.of(&[1.0, 0.0]);
-        // Even over 80 K about a mean of 10 K.
+        // Uniform over 80 K about a mean of 10 K.
         assert!((own.deviation - 0.01 * 80.0 / 12.0_f64.sqrt()).abs() < 1e-12);
         assert!((own.shift - 0.1).abs() < 1e-12);
         assert_eq!(own.sources, [0.0, 0.0, 1.0]);

@@ -1,20 +1,20 @@
-//! Elasticities: by how many percent a metric grows where a parameter grows by one.
+//! Elasticities: the percentage by which a metric grows if a parameter grows by one percent.
 
 use crate::metric::{Ground, MetricError};
 use crate::response::parameters::Values;
 
-/// The readings of a ground, and how they follow parameters.
+/// The readings of a ground with their elasticities.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Elasticities {
-    /// Of each reading.
+    /// The value of each reading.
     pub values: Vec<f64>,
-    /// For each reading, for each parameter `dy/dp · p/y`; not a number where the reading is zero.
+    /// For each reading and each parameter `dy/dp · p/y`; NaN if the reading is zero.
     pub elasticities: Vec<Vec<f64>>,
-    /// For each reading, for each parameter `dy/dp`.
+    /// For each reading and each parameter `dy/dp`, SI.
     pub slopes: Vec<Vec<f64>>,
 }
 
-/// The direction along which a parameter and all that are tied to it grow by their own value; by one where that is zero.
+/// The direction along which a parameter and those tied to it grow by their own value, or by one if that is zero.
 pub fn direction(values: &Values, parameter: usize) -> Vec<f64> {
     let size = size(values, parameter);
     let all = 0..values.as_slice().len();
@@ -22,7 +22,7 @@ pub fn direction(values: &Values, parameter: usize) -> Vec<f64> {
         .collect()
 }
 
-/// What a parameter's changes are counted in: its own value, or one where that is zero.
+/// The unit of changes of a parameter: its own value, or one if that is zero.
 pub fn size(values: &Values, parameter: usize) -> f64 {
     match values.as_slice()[parameter] {
         0.0 => 1.0,
@@ -30,10 +30,10 @@ pub fn size(values: &Values, parameter: usize) -> f64 {
     }
 }
 
-/// Elasticities of the readings of a ground by parameters that lead their ties, by their places.
+/// Elasticities of the readings of a ground by leading parameters, given by their positions.
 ///
 /// # Errors
-/// What cannot be measured.
+/// Fails if a metric has no value.
 pub fn elasticities(ground: &Ground<'_>, values: &Values, parameters: &[usize]) -> Result<Elasticities, MetricError> {
     let directions: Vec<Vec<f64>> = parameters
         .iter()

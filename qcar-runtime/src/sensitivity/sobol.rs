@@ -1,4 +1,4 @@
-//! Sobol indices: which share of the variance of a result is a parameter's, alone and with others.
+//! Sobol indices: the share of a parameter in the variance of a result, alone and in interaction with others.
 //!
 //! The estimators are those of Saltelli, Annoni, Azzini, Campolongo, Ratto and Tarantola, "Variance based sensitivity
 //! analysis of model output", Comp. Phys. Comm. 181 (2010), table 2: for the first order (b), for the total (f), which is
@@ -7,36 +7,36 @@
 use crate::progress::{self, OnProgress};
 use crate::random::SplitMix;
 
-/// How many designs, and which.
+/// Number of designs, and seed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Plan {
-    /// Of all together at the most; each base design takes two more than there are parameters.
+    /// Largest number of designs in total. Each base design needs two more than the number of parameters.
     pub designs: usize,
-    /// Of the random numbers.
+    /// Seed of the random numbers.
     pub seed: u64,
 }
 
 /// The indices of every result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Indices {
-    /// For each result, for each parameter.
+    /// For each result and each parameter.
     pub of: Vec<Vec<Index>>,
     /// Mean and standard deviation of each result over the designs.
     pub moments: Vec<[f64; 2]>,
-    /// Designs that were evaluated.
+    /// Number of evaluated designs.
     pub designs: usize,
-    /// Base designs that were left out since one of their designs has no results.
+    /// Number of base designs that were left out because one of their designs has no results.
     pub failed: usize,
 }
 
 /// Shares of a variance with their 95 % intervals.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Index {
-    /// Of the parameter alone.
+    /// First-order index: share of the parameter alone.
     pub first: f64,
     /// Its confidence interval.
     pub first_interval: [f64; 2],
-    /// Of the parameter with all that it takes part in.
+    /// Total index: share of the parameter with all its interactions.
     pub total: f64,
     /// Its confidence interval.
     pub total_interval: [f64; 2],
@@ -52,8 +52,8 @@ struct Row {
     mixed: Vec<Vec<f64>>,
 }
 
-/// Indices of `parameters` that are uniform in a unit cube, of the results that `evaluate` gives of several designs at once; `None`
-/// where a design has none.
+/// Indices of `parameters` parameters that are uniform in a unit cube. `evaluate` gives the results of several designs
+/// at once; `None` for a design without results.
 pub fn indices(
     parameters: usize,
     plan: Plan,
@@ -61,7 +61,7 @@ pub fn indices(
     evaluate: impl Fn(&[Vec<f64>]) -> Vec<Option<Vec<f64>>> + Sync + Send,
 ) -> Indices {
     let bases = (plan.designs / (parameters + 2)).max(2);
-    // One cube for both halves, so that A and B are independent and each fills the ranges evenly.
+    // One hypercube for both, so that A and B are independent and each covers the ranges evenly.
     let points = SplitMix::new(plan.seed).hypercube(bases, 2 * parameters);
     let row = |point: &Vec<f64>| {
         let (a, b) = point.split_at(parameters);
@@ -112,13 +112,14 @@ fn index(rows: &[Row], all: &[usize], resamples: &[Vec<usize>], result: usize, k
     }
 }
 
-/// First-order and total share by the rows with these places.
+/// First-order and total index from the chosen rows.
 fn shares(rows: &[Row], chosen: &[usize], result: usize, k: usize) -> [f64; 2] {
     let [mean, deviation] = moments(rows, chosen, result);
     let (mut alone, mut together) = (0.0, 0.0);
     for row in chosen.iter().map(|&at| &rows[at]) {
         let [a, b, mixed] = [row.a[result], row.b[result], row.mixed[k][result]];
-        // Less the mean: the estimator stays the same, and its scatter does not grow with a constant in the result.
+        // The mean is subtracted: the estimate stays the same, and its scatter does not grow with a constant in the
+        // result.
         alone += (b - mean) * (mixed - a);
         together += 0.5 * (a - mixed).powi(2);
     }
@@ -139,7 +140,7 @@ fn moments(rows: &[Row], chosen: &[usize], result: usize) -> [f64; 2] {
     [mean, variance.sqrt()]
 }
 
-/// The middle 95 %.
+/// The central 95 % of values.
 fn interval(of: impl Iterator<Item = f64>) -> [f64; 2] {
     let mut sorted: Vec<f64> = of.collect();
     sorted.sort_by(f64::total_cmp);

@@ -1,5 +1,6 @@
-//! Rides abreast: the general method takes each from bend to bend by itself, and wherever their tyres' forces are smooth, several
-//! go on in step. The bits are those of each ride alone, whichever others are beside it.
+//! Rides side by side: the general method integrates each of them alone near kinks of the tyre's force, and several
+//! rides continue together where their forces are smooth. A ride has the same bits as alone, whichever rides are beside
+//! it.
 
 use std::iter::Enumerate;
 use std::slice;
@@ -50,9 +51,10 @@ struct Abreast<'r, 'a, M: ?Sized, D> {
     kept: &'r Kept,
     done: D,
     waiting: Enumerate<slice::Iter<'r, Ridden<'a>>>,
-    /// Memory of complete records, for the rides to come.
+    /// Buffers of completed records, for further rides.
     rooms: Vec<Vec<f64>>,
-    /// Parameters of the last ride that has begun, and its exponential method: those of a car often come one after the other.
+    /// Parameters of the last ride that was started, and its exponential method: rides of the same car often follow
+    /// each other.
     last: Option<(&'a [f64], ExponentialAdams<2>)>,
     formation: Option<Formation<'a, M>>,
     lanes: [Option<Lane<'a, M>>; LANES],
@@ -68,12 +70,13 @@ struct Lane<'a, M: ?Sized> {
     left: usize,
 }
 
-/// When no rides wait and no more than these are left, each continues alone: a step of the formation takes as long for one as for
-/// eight.
+/// If no rides wait and at most this many are left, each continues alone: a step of the formation takes as long for one
+/// ride as for eight.
 const FEW: usize = 1;
 
 impl<'a, M: Model + ?Sized, D: FnMut(usize, Result<Ride, SimulateError>)> Abreast<'_, 'a, M, D> {
-    /// Integrates a ride until its tyre's force is smooth and puts it into a lane; a ride that ends before is replaced by the next.
+    /// Integrates a ride until its tyre's force is smooth, then puts it into a lane. If the ride ends before, the next
+    /// one follows.
     fn occupy(&mut self, place: usize, mut coming: Option<Numbered<'a, M>>) {
         while let Some((number, mut journey)) = coming.take().or_else(|| self.next()) {
             match journey.advance() {

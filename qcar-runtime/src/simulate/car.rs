@@ -59,7 +59,7 @@ impl<M: Model + ?Sized> Car<'_, M> {
         }
     }
 
-    /// Positions of the states that the variant fixes: all along the axis of rolling.
+    /// Indices of the states that the variant fixes: all those along the axis of rolling.
     pub(super) fn locked(&self, contact: &ContactAbout) -> Vec<usize> {
         let free = self.variant == Variant::Complete;
         let Some(rolling) = contact.axes.get(1).filter(|_| !free) else {
@@ -72,7 +72,7 @@ impl<M: Model + ?Sized> Car<'_, M> {
             .collect()
     }
 
-    /// What depends on the parameters alone.
+    /// The constants of the parameter set.
     pub(super) fn constants(&self) -> Vec<f64> {
         let mut constants = vec![0.0; self.model.about().constants];
         self.model.prepare(self.parameters, &mut constants);

@@ -1,8 +1,8 @@
-//! Linear axles on smooth ground in step, a lane each: the exponential method, the contact and the equations of motion run over
-//! the lanes.
+//! Linear axles on smooth ground, integrated together with one lane for each: the exponential method, the contact and
+//! the equations of motion run over the lanes.
 //!
-//! Each lane has the bits of a [`Shortcut`] alone. Where a tyre is on more than one straight piece of road, its contact is found
-//! alone, too.
+//! Each lane has the same bits as a [`Shortcut`] alone. The contact of a tyre on more than one straight piece of road
+//! is computed alone.
 
 use super::rolling::{Rolling, WheelStates};
 use super::shortcut::Shortcut;
@@ -13,19 +13,19 @@ use crate::vectors::{Loops, over_lanes};
 
 const NOTHING: Lanes = [0.0; LANES];
 
-/// The motions.
+/// Rides that are integrated together.
 pub(super) struct Formation<'a, M: ?Sized> {
     model: &'a M,
     tyre: Tyre,
     method: ExponentialAbreast<2>,
     relative: f64,
-    /// Where a step ends, s.
+    /// End of the step of each lane, s.
     times: Lanes,
     constants: Vec<Lanes>,
     inputs: Vec<Lanes>,
-    /// m/s.
+    /// Speeds, m/s.
     speeds: Lanes,
-    /// Of the wheels' centres in the design position, m.
+    /// Heights of the wheels' centres in the design position, m.
     heights: Lanes,
     /// Forces on the wheels other than that of the contact, in z and x, N.
     offsets: [Lanes; 2],
@@ -40,7 +40,7 @@ pub(super) struct Formation<'a, M: ?Sized> {
     /// Contact forces with the other forces on the wheels added.
     driven: Contacts,
     rates: Vec<Lanes>,
-    /// Room for the state of one lane.
+    /// Buffer for the state of one lane.
     state: Vec<f64>,
 }
 
@@ -95,7 +95,7 @@ impl<'a, M: Model + ?Sized> Formation<'a, M> {
         x.copy_from_slice(shortcut.state());
     }
 
-    /// Doubles the step of a lane if that is wanted and enough past forces are known.
+    /// Doubles the step of a lane if that is possible and enough past forces are known.
     #[inline]
     pub fn lengthen(&mut self, lane: usize, shortcut: &mut Shortcut, rolling: &Rolling<'_, M>) {
         if shortcut.wants_longer(rolling) && self.method.may_lengthen(lane) {
@@ -105,12 +105,12 @@ impl<'a, M: Model + ?Sized> Formation<'a, M> {
         }
     }
 
-    /// Sets when the step of a lane ends, s.
+    /// Sets the end of the step of a lane, s.
     pub fn aim(&mut self, lane: usize, time: f64) {
         self.times[lane] = time;
     }
 
-    /// When the step of a lane ends, s.
+    /// The end of the step of a lane, s.
     pub fn time(&self, lane: usize) -> f64 {
         self.times[lane]
     }
@@ -160,7 +160,7 @@ impl<'a, M: Model + ?Sized> Formation<'a, M> {
         }
     }
 
-    /// The contacts that were computed.
+    /// The computed rates.
     pub fn rates(&self) -> &[Lanes] {
         &self.rates
     }

@@ -1,4 +1,4 @@
-//! Stretches of a signal of which every so many samples are known, filled in by polynomials.
+//! Ranges of a signal in which only one sample in each stride is known; polynomials give the others.
 
 use std::array;
 use std::ops::Range;
@@ -15,13 +15,13 @@ pub(super) struct Gap {
     pub reach: usize,
 }
 
-/// Number of known samples that a polynomial interpolates, half of them on each side where possible. A vibration with a period
-/// of ten strides is accurate to 3e-5.
+/// Number of known samples that a polynomial interpolates, half of them on each side if possible. A vibration with a
+/// period of ten strides is accurate to 3e-5.
 const AROUND: usize = 8;
 const BEFORE: usize = AROUND / 2 - 1;
 
 impl Gap {
-    /// Interpolates the missing points of signals that are each stored in `phases` of some length; the first phase has the samples.
+    /// Interpolates the missing points of signals that are stored phase by phase; the first phase has the samples.
     ///
     /// The signals must be smooth in the gap and for as many strides before it as the integration method looked back. Points
     /// further away are not used.

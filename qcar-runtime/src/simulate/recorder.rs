@@ -11,9 +11,10 @@ use crate::vectors::{Loops, widest};
 pub(super) struct Recorder<'a, M: ?Sized> {
     rolling: Rolling<'a, M>,
     shortcut: Option<Shortcut>,
-    /// Room for a state.
+    /// Buffer for a state.
     state: Vec<f64>,
-    /// Room for its rate, then the outputs where the model has to compute them, then force and deflection of the contact.
+    /// Buffer for its rates, then the outputs if the model has to compute them, then force and deflection of the
+    /// contact.
     rates: Vec<f64>,
     /// For each output that is kept, its index in that row. The acceleration of a mass is a rate, so most models need not
     /// compute their outputs.
@@ -27,23 +28,23 @@ pub(super) struct Recorder<'a, M: ?Sized> {
     pub lift_offs: Vec<f64>,
     /// Times at which it regained contact, s.
     pub landings: Vec<f64>,
-    /// Time of the last evaluation, and whether the tyre was on the ground.
+    /// Time of the last evaluation, s, and true if the tyre was on the ground.
     last: (f64, bool),
 }
 
 /// Which signals of a ride are kept.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kept {
-    /// Whether each output of the model is.
+    /// For each output of the model, true if it is kept.
     pub outputs: Vec<bool>,
-    /// Whether the force of the tyre is.
+    /// True if the force of the tyre is kept.
     pub force: bool,
-    /// Whether the area of its contact is.
+    /// True if the area of the contact is kept.
     pub area: bool,
 }
 
 impl Kept {
-    /// All of them.
+    /// All signals.
     pub fn all(about: &About) -> Self {
         Self {
             outputs: vec![true; about.outputs.len()],
@@ -119,8 +120,7 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
         shortcut.note(&self.rolling, step.end, step.end_state(), force);
     }
 
-    /// Records a sample at time `t`, under a contact; what lies between it and the last one is left to
-    /// [`Recorder::finish`].
+    /// Records a sample at time `t` with its contact; [`Recorder::finish`] interpolates between it and the last one.
     pub fn record_step(&mut self, t: f64, x: &[f64], contact: Contact) {
         if self.tape.next(t).is_some() {
             self.tape.skip_to(t);
@@ -155,7 +155,7 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
         self.tape.fill_in();
     }
 
-    /// Each output at the samples; nothing of those that are not kept.
+    /// Each output at the samples; empty for outputs that are not kept.
     pub fn outputs(&self) -> Vec<Vec<f64>> {
         let filtered = |place| {
             self.track(place)
@@ -182,8 +182,8 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
         self.tape.into_room()
     }
 
-    /// Integrates this ride by the shortcut once it has begun, by at most so many steps, and leaves the state in `x`. Returns the
-    /// time and the effort.
+    /// Integrates this ride by the shortcut, which has begun, for at most `most_steps` steps. Stores the state in `x`
+    /// and returns the time and the effort.
     pub fn go_on(&mut self, x: &mut [f64], most_steps: usize) -> (f64, Effort) {
         let mut shortcut = self.shortcut.take().expect("it has taken over");
         widest(Steps {
@@ -255,7 +255,7 @@ impl<M: Model + ?Sized> System for Recorder<'_, M> {
     }
 
     fn event_values(&mut self, t: f64, x: &[f64], values: &mut [f64]) {
-        // A step's last evaluation is that at its end: there the ground need not be looked for again.
+        // The last evaluation of a step is at its end, so the contact there is already known.
         let grounded = if t == self.last.0 {
             self.last.1
         } else {
@@ -313,7 +313,7 @@ impl<M: Model + ?Sized> Loops for Steps<'_, '_, '_, M> {
     }
 }
 
-/// Derivative and signals at time `t`, and whether the tyre is on the ground.
+/// Computes derivative and signals at time `t`. Returns true if the tyre is on the ground.
 #[inline(always)]
 fn observe<M: Model + ?Sized>(rolling: &Rolling<'_, M>, t: f64, x: &[f64], rates: &mut [f64]) -> bool {
     let (dx, outputs, of_contact) = parts(rates, x.len());

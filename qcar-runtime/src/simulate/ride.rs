@@ -13,48 +13,49 @@ use crate::road::Road;
 use crate::solver::{Effort, ExponentialAdams, Reason, System};
 use crate::tyre::{Geometry, Tyre};
 
-/// A ride that is to be simulated.
+/// A ride to be simulated.
 #[derive(Clone, Copy)]
 pub struct Drive<'a> {
-    /// The wheel's centre is above its x = 0 at t = 0.
+    /// The road; at t = 0 the wheel's centre is above x = 0.
     pub road: &'a Road,
-    /// m/s.
+    /// Speed, m/s.
     pub speed: f64,
-    /// Hz.
+    /// Sample rate, Hz.
     pub sample_rate: f64,
     /// Number of samples, the first at t = 0.
     pub samples: usize,
 }
 
-/// A ride that was simulated.
+/// A simulated ride.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ride {
     /// Time of each sample, s.
     pub time: Vec<f64>,
     /// Each output of the model, through [`AntiAlias`](super::AntiAlias).
     pub outputs: Vec<Vec<f64>>,
-    /// Force of the tyre on the wheel in z and x, N, as it is at the samples (not filtered: exactly zero in the air).
+    /// Force of the tyre on the wheel in z and x, N, at the samples. It is not filtered, so it is exactly zero in the
+    /// air.
     pub force: [Vec<f64>; 2],
-    /// Area of the tyre's contact, m², as it is at the samples; for another geometry than [`Geometry::Area`], that of
-    /// the equivalent deflection.
+    /// Area of the tyre's contact, m², at the samples, not filtered. For geometries other than [`Geometry::Area`] it is
+    /// that of the equivalent deflection.
     pub area: Vec<f64>,
-    /// When the tyre lost the ground, s.
+    /// Times at which the tyre lost contact, s.
     pub lift_offs: Vec<f64>,
-    /// When it came back, s.
+    /// Times at which it regained contact, s.
     pub landings: Vec<f64>,
     /// Deflection of the tyre before the obstacle, m.
     pub static_deflection: f64,
     /// The constant force that drives the wheel against its rolling drag, N.
     pub traction: f64,
-    /// What the integration cost.
+    /// Effort of the integration.
     pub effort: Effort,
 }
 
-/// Simulates each ride, in parallel; the results do not depend on the number of threads. Ride by ride `on_progress` hears how
-/// far it is.
+/// Simulates rides in parallel. The results do not depend on the number of threads. Reports to `on_progress` after each
+/// ride.
 ///
 /// # Errors
-/// For each ride as [`ride`].
+/// Each ride fails as [`ride`] does.
 pub fn rides<M: Model + ?Sized>(
     car: &Car<'_, M>,
     drives: &[Drive<'_>],
@@ -67,8 +68,8 @@ pub fn rides<M: Model + ?Sized>(
 /// Simulates a ride that begins at rest on the flat ground before the road.
 ///
 /// # Errors
-/// A drive or car that makes no sense, a road that is too short, a model without a tyre that rolls, no static
-/// equilibrium, and an integration that stops early.
+/// Fails if a number of the drive or car is invalid, if the road is too short, if the model has no tyre that can roll
+/// or no static equilibrium, or if the integration stops early.
 pub fn ride<M: Model + ?Sized>(
     car: &Car<'_, M>,
     drive: &Drive<'_>,
@@ -80,10 +81,10 @@ pub fn ride<M: Model + ?Sized>(
     Ok(journey.ride().0)
 }
 
-/// The state in which a ride ends, and what the integration cost. Nothing is recorded on the way.
+/// The final state of a ride, and the effort of the integration. No signal is recorded.
 ///
 /// # Errors
-/// As [`ride`].
+/// Fails as [`ride`] does.
 pub fn end_of_ride<M: Model + ?Sized>(
     car: &Car<'_, M>,
     drive: &Drive<'_>,
@@ -96,8 +97,8 @@ pub fn end_of_ride<M: Model + ?Sized>(
     Ok((journey.x, journey.effort))
 }
 
-/// A ride on its way: the general method takes it from where its force bends to where that is smooth, and there its recorder
-/// takes over.
+/// A ride that is being integrated: by the general method near kinks of the force, and by its recorder's shortcut where
+/// the force is smooth.
 pub(super) struct Journey<'a, M: ?Sized> {
     pub recorder: Recorder<'a, M>,
     pub x: Vec<f64>,
@@ -105,17 +106,18 @@ pub(super) struct Journey<'a, M: ?Sized> {
     drive: Drive<'a>,
     integrator: Integrator,
     most_steps: usize,
-    /// Where it is, at first where the road begins to move it, and when the record ends, s.
+    /// Present time, at first the time at which the road begins to move the car, and end of the record, s.
     span: (f64, f64),
     effort: Effort,
-    /// Of the recorder since it took over; none before it does.
+    /// Effort of the recorder since it took over; `None` before.
     spent: Option<Effort>,
     static_deflection: f64,
 }
 
 impl<'a, M: Model + ?Sized> Journey<'a, M> {
-    /// A car at rest on flat ground, about to move. What of the grid of the samples `recorded` leaves is recorded, in a room. The
-    /// exponential method may be that of another ride of the `same` car.
+    /// A car at rest on flat ground, at the time at which it begins to move. `recorded` reduces the grid of the samples
+    /// to the recorded points, and `room` is a buffer for them. The exponential method may be that of another ride of
+    /// the `same` car.
     pub fn new(
         car: &Car<'a, M>,
         drive: &Drive<'a>,
@@ -148,10 +150,10 @@ impl<'a, M: Model + ?Sized> Journey<'a, M> {
         })
     }
 
-    /// Goes on by the general method, and says whether the recorder has taken over; else it is at the end.
+    /// Continues by the general method. Returns true if the recorder has taken over, false at the end of the ride.
     ///
     /// # Errors
-    /// Where the integration stops before.
+    /// Fails if the integration stops early.
     pub fn advance(&mut self) -> Result<bool, SimulateError> {
         let span = (self.span, &[][..]);
         let report = self
@@ -164,27 +166,27 @@ impl<'a, M: Model + ?Sized> Journey<'a, M> {
         }
     }
 
-    /// So many steps may still be attempted.
+    /// Number of steps that may still be attempted.
     pub fn steps_left(&self) -> usize {
         self.most_steps - self.effort.accepted - self.effort.rejected
     }
 
-    /// The recorder hands it back at a time, s, with the state in its place, and what it has spent.
+    /// Returns the ride from the recorder at a time (s), with the effort that was spent. The state is already stored.
     pub fn hand_back(&mut self, (time, spent): (f64, Effort)) {
         (self.span.0, self.spent) = (time, Some(spent));
     }
 
-    /// Goes on alone where the recorder has taken over.
+    /// Continues alone after the recorder has taken over.
     pub fn go_on(&mut self) {
         let most_steps = self.steps_left();
         let ended = self.recorder.go_on(&mut self.x, most_steps);
         self.hand_back(ended);
     }
 
-    /// Goes on alone to the end.
+    /// Continues alone to the end.
     ///
     /// # Errors
-    /// Where the integration stops before.
+    /// Fails if the integration stops early.
     pub fn finish(&mut self) -> Result<(), SimulateError> {
         while self.advance()? {
             self.go_on();
@@ -192,7 +194,7 @@ impl<'a, M: Model + ?Sized> Journey<'a, M> {
         Ok(())
     }
 
-    /// What was recorded, and the room of its tape for another one.
+    /// The recorded ride, and the buffer of its tape for another ride.
     pub fn ride(mut self) -> (Ride, Vec<f64>) {
         self.recorder.finish();
         let [vertical, longitudinal, area] = self.recorder.contact();
@@ -212,7 +214,7 @@ impl<'a, M: Model + ?Sized> Journey<'a, M> {
     }
 }
 
-/// The fewest samples while an obstacle passes through the contact patch that still show an impact.
+/// Smallest number of samples, while an obstacle passes through the contact patch, that resolves an impact.
 const SAMPLES_PER_PATCH: f64 = 4.0;
 
 impl Drive<'_> {
@@ -235,26 +237,26 @@ impl Drive<'_> {
         }
     }
 
-    /// When the whole circle of the tyre stands before the first point of the road, s.
+    /// Time at which the whole circle of the tyre is before the first point of the road, s.
     pub(super) fn start(&self, tyre: &Tyre) -> f64 {
         (self.road.extent()[0] - tyre.radius()) / self.speed
     }
 
-    /// When the circle of the tyre may meet ground that is not level any more, s: until then a car at rest rests.
-    /// On a road that is level for ever it never does, and nothing is taken for granted.
+    /// Time at which the circle of the tyre may first reach uneven ground, s; a car at rest does not move before. On a
+    /// road that is level everywhere it is the start of the ride.
     pub(super) fn reaches(&self, tyre: &Tyre) -> f64 {
         let vertices = self.road.vertices();
         let uneven = vertices.windows(2).find(|pair| pair[0][1] != pair[1][1]);
-        // However high the road rises further on, the circle at rest meets it no earlier than at that height.
+        // However high the road is further on, the circle at rest does not reach it before this position.
         let clearance = tyre.radius() - tyre.static_deflection() - (self.road.bounds().highest - vertices[0][1]);
         let reach = (tyre.radius().powi(2) - clearance.max(0.0).powi(2)).sqrt();
         uneven.map_or(f64::NEG_INFINITY, |pair| (pair[0][0] - reach) / self.speed)
     }
 
-    /// The longest step that cannot pass over any part of the road unseen, s.
+    /// Longest step that cannot skip a feature of the road, s.
     ///
-    /// A circle feels what is within its static patch, so a quarter of that; a point feels an obstacle only while it is
-    /// on it, so that several steps must fall on the shortest.
+    /// For a circle it is the time for a quarter of its static patch. A point contact responds to an obstacle only
+    /// while it is on it, so several steps must fall on the shortest obstacle.
     pub(super) fn longest_step(&self, tyre: &Tyre) -> f64 {
         let length = match tyre.geometry() {
             Geometry::Point => shortest_obstacle(self.road).min(tyre.patch()),
@@ -272,7 +274,7 @@ pub(super) fn oversampling(tyre: &Tyre) -> usize {
     }
 }
 
-/// Length of the shortest part of a road that is not level, m; vertical steps aside, where the solver stops by itself.
+/// Length of the shortest uneven part of a road, m, without vertical steps, at which the solver stops anyway.
 fn shortest_obstacle(road: &Road) -> f64 {
     let (mut start, mut shortest) = (None, f64::INFINITY);
     for pair in road.vertices().windows(2) {

@@ -10,11 +10,11 @@ use crate::model::{Contact, ContactAbout, Model};
 use crate::road::Road;
 use crate::tyre::{Geometry, Touch, Tyre, Wheel};
 
-/// What rolls, where and how fast.
+/// The rolling model, its road and its speed.
 pub(super) struct Rolling<'a, M: ?Sized> {
     pub model: &'a M,
     pub constants: Vec<f64>,
-    /// All zero: the preloads of the links balance gravity, and the road acts through the contact alone.
+    /// Inputs, all zero: the preloads of the links balance gravity, and the road acts through the contact only.
     pub inputs: Vec<f64>,
     pub tyre: Tyre,
     /// Static load of the tyre, N.
@@ -22,34 +22,34 @@ pub(super) struct Rolling<'a, M: ?Sized> {
     pub road: &'a Road,
     /// Height of the wheel's centre in the design position, m.
     pub height: f64,
-    /// m/s.
+    /// Speed, m/s.
     pub speed: f64,
     pub wheel: WheelStates,
-    /// Places of states that do not move.
+    /// Indices of states that do not move.
     pub locked: Vec<usize>,
     /// The constant force in x that balances the rolling drag on a flat road, N.
     pub traction: f64,
     /// The piece of road that was last under the tyre.
     pub piece: Cell<usize>,
-    /// Up to where the road has no further vertical step, m, for a tyre that feels such a step at once.
+    /// Position of the next vertical step, m, for a tyre that responds to a step at once.
     smooth_until: f64,
-    /// Where the road turns sharply. The force of a circle bends when its rim comes over one of these points.
+    /// Sharp edges of the road. The force of a circle has a kink when its rim reaches one of these points.
     edges: Vec<[f64; 2]>,
-    /// Where the circle of the tyre has left the last uneven ground behind, m.
+    /// Position from which the ground under the circle is level, m.
     level_from: f64,
-    /// From where on the force is smooth but for edges, m: a single point feels each piece of the road.
+    /// Position from which the force is smooth except at edges, m: a point contact responds to each piece of the road.
     pub smooth_from: f64,
 }
 
-/// Changes of a position, m, and of a velocity, m/s, for derivatives of the contact's force: a thousandth of what rounding
-/// leaves of it, and far below the deflection of any tyre.
+/// Changes of a position, m, and of a velocity, m/s, for difference quotients of the contact's force: large enough that
+/// rounding is negligible, and far below the deflection of any tyre.
 const SMALL_MOTION: [f64; 2] = [1e-7, 1e-5];
-/// The same of a state of the tyre, on which its law depends linearly, in parts of its size.
+/// The same for a state of the tyre, on which its law depends linearly, relative to the size of the state.
 const SMALL_PART: f64 = 1e-3;
 /// Deflections, m, and their rates, m/s, at which two laws of a contact are compared.
 const PROBES: [[f64; 2]; 3] = [[-0.01, 0.1], [-0.02, -1.0], [-0.035, 0.4]];
 
-/// Places of the wheel's position and velocity, in z and, where it moves, in x.
+/// Indices of the wheel's position and velocity in z and, if it moves there, in x.
 #[derive(Clone, Copy)]
 pub(super) struct WheelStates {
     pub z: [usize; 2],
@@ -72,13 +72,13 @@ impl WheelStates {
 impl<'a, M: Model + ?Sized> Rolling<'a, M> {
     /// A car at rest at time `t` on flat ground, and its state.
     ///
-    /// The tyre's damping has a part along a flat road too, since its front grows and its rear shrinks: a drag. A
-    /// constant traction balances it, so that nothing moves before the road does.
+    /// On a flat road, the tyre's damping causes a drag, since the contact grows at its front and shrinks at its rear.
+    /// A constant traction balances it, so that the car does not move on flat ground.
     pub fn at_rest(car: &Car<'a, M>, road: &'a Road, speed: f64, t: f64) -> Result<(Self, Vec<f64>), SimulateError> {
         Self::at_rest_near(&vec![0.0; car.model.about().states.len()], car, road, speed, t)
     }
 
-    /// The same, the state being near one that is known.
+    /// The same, with a state that is near a known one.
     pub fn at_rest_near(
         known: &[f64],
         car: &Car<'a, M>,
@@ -118,7 +118,7 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
         Ok((rolling, x))
     }
 
-    /// A tyre stands where it is pressed by less than its radius, and pushes the more the more it is pressed.
+    /// Checks that the static deflection is less than the radius, and that the force increases with the deflection.
     fn check_stands(&self, t: f64, x: &[f64]) -> Result<(), SimulateError> {
         let (radius, deflection) = (self.tyre.radius(), self.deflection(t, x));
         if deflection >= radius {
@@ -141,8 +141,8 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
             .rolling_derivative(&self.constants, x, &self.inputs, &contact, dx);
     }
 
-    /// `dx/dt` and, where there is room for them, the outputs of the model at time `t`, and the contact that they stem
-    /// from; none in the air.
+    /// Computes `dx/dt` and, if `y` is not empty, the outputs of the model at time `t`. Returns the contact; `None` in
+    /// the air.
     #[inline(always)]
     pub fn motion(&self, t: f64, x: &[f64], dx: &mut [f64], y: &mut [f64]) -> Option<Contact> {
         let contact = self.touch(t, x).map(|touch| self.contact(Some(&touch), x));
@@ -150,7 +150,7 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
         contact
     }
 
-    /// `dx/dt` and, where there is room for them, the outputs of the model under forces.
+    /// Computes `dx/dt` and, if `y` is not empty, the outputs of the model under given forces.
     #[inline(always)]
     pub fn move_by(&self, driven: &Contact, x: &[f64], dx: &mut [f64], y: &mut [f64]) {
         self.model
@@ -163,13 +163,13 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
         }
     }
 
-    /// Of the model, how many states and how many outputs there are.
+    /// Number of states and of outputs of the model.
     pub fn sizes(&self) -> (usize, usize) {
         let about = self.model.about();
         (about.states.len(), about.outputs.len())
     }
 
-    /// True where but for what the contact gives all is linear.
+    /// True if the model is linear apart from the contact.
     pub fn is_linear_beside_contact(&self) -> bool {
         let deflected = |by: f64| {
             let given = Contact {
@@ -186,7 +186,7 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
         self.model.about().linear && deflected(1.0).into_iter().map(twice).eq(deflected(2.0))
     }
 
-    /// True where that is the force of the contact alone: the tyre has no states of its own.
+    /// True if, in addition, the contact acts by its force only: the tyre has no inner states.
     pub fn is_linear(&self) -> bool {
         let states = vec![0.0; self.sizes().0];
         let mut rate = states.clone();
@@ -199,21 +199,21 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
         self.model.about().linear && rate == states
     }
 
-    /// The contact at time `t`; none in the air.
+    /// The contact at time `t`; `None` in the air.
     #[inline(always)]
     pub fn contact_at(&self, t: f64, x: &[f64]) -> Option<Contact> {
         let touch = self.touch(t, x)?;
         Some(self.contact(Some(&touch), x))
     }
 
-    /// What the contact gives to the axle at time `t`: the forces that move the wheel from its rest, N, in z and x, and to a
-    /// tyre with states of its own deflection and rate, m and m/s.
+    /// The inputs of the axle from the contact at time `t`: the forces on the wheel relative to rest, N, in z and x,
+    /// and for a tyre with inner states its deflection and rate, m and m/s.
     pub fn given(&self, t: f64, x: &[f64]) -> [f64; 4] {
         let contact = self.driven(self.contact_at(t, x).unwrap_or_default());
         [contact.force[0], contact.force[1], contact.s, contact.v]
     }
 
-    /// Places of the states that the contact depends on, each with a small change of it.
+    /// Indices of the states on which the contact depends, each with a small change for a difference quotient.
     pub fn touching(&self) -> Vec<(usize, f64)> {
         let axes = [Some(self.wheel.z), self.wheel.x].into_iter().flatten();
         let of_axis = |[position, velocity]: [usize; 2]| [(position, SMALL_MOTION[0]), (velocity, SMALL_MOTION[1])];
@@ -230,36 +230,36 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
         touching
     }
 
-    /// True where the contact of another car gives the same in the same place.
+    /// True if the contact of another car gives the same inputs at the same state.
     pub fn is_touched_like(&self, other: &Self) -> bool {
         let laws = [self, other].map(|own| own.laws(&own.nowhere_zero()));
         let others = |own: &Self| (own.tyre, own.height, own.load, own.traction);
         laws[0] == laws[1] && others(self) == others(other)
     }
 
-    /// What the law of the contact says at some places of its own.
+    /// Forces of the contact's law at some deflections and rates.
     fn laws(&self, x: &[f64]) -> [f64; 3] {
         PROBES.map(|[s, v]| self.model.contact_force(&self.constants, x, s, v))
     }
 
-    /// A state at which no law that depends on it shows nothing of that.
+    /// A state without zeros, at which every law that depends on a state has an effect of it.
     fn nowhere_zero(&self) -> Vec<f64> {
         let scales = scales(self.model.about()).enumerate();
         scales.map(|(state, scale)| (1 + state) as f64 * scale).collect()
     }
 
-    /// Where the wheel's centre is at time `t`, m.
+    /// Position of the wheel's centre at time `t`, m.
     pub fn centre(&self, t: f64, x: &[f64]) -> [f64; 2] {
         self.wheel(t, x).position
     }
 
-    /// True where a wheel with this centre is on level ground that goes on for ever.
+    /// True if a wheel with this centre is on ground that stays level.
     pub fn is_level(&self, centre: [f64; 2]) -> bool {
         centre[0] >= self.level_from
     }
 
-    /// True where the force of the tyre is not smooth between two places of the wheel's centre: its rim has come over an
-    /// edge of the road, or it feels single points of uneven ground.
+    /// True if the force of the tyre is not smooth between two positions of the wheel's centre: its rim has passed an
+    /// edge of the road, or it is a point contact on uneven ground.
     #[inline(always)]
     pub fn bends_between(&self, from: [f64; 2], to: [f64; 2]) -> bool {
         let squared = self.tyre.radius() * self.tyre.radius();
@@ -271,7 +271,7 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
             || !self.is_level(from) && self.edges_near(to).any(|edge| inside(from, edge) != inside(to, edge))
     }
 
-    /// The edges of the road that are not far from a wheel with this centre.
+    /// The edges of the road near a wheel with this centre.
     fn edges_near(&self, centre: [f64; 2]) -> impl Iterator<Item = &[f64; 2]> {
         let [behind, ahead] = [-2.0, 2.0].map(|radii| centre[0] + radii * self.tyre.radius());
         let first = self.edges.partition_point(|edge| edge[0] < behind);
@@ -282,7 +282,7 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
     #[inline(always)]
     pub fn touch(&self, t: f64, x: &[f64]) -> Option<Touch> {
         let mut wheel = self.wheel(t, x);
-        // Before a step has become an event, the solver looks ahead as if there were none.
+        // Before a step of the road becomes an event, the solver extrapolates as if there were none.
         wheel.position[0] = wheel.position[0].min(self.smooth_until);
         self.tyre.touch_near(self.road, &wheel, &self.piece)
     }
@@ -292,12 +292,12 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
         self.touch(t, x).map_or(0.0, |touch| touch.deflection)
     }
 
-    /// How far the wheel's centre is from a vertical step that its tyre feels at once, m.
+    /// Distance of the wheel's centre from the next vertical step to which its tyre responds at once, m.
     pub fn to_next_step(&self, t: f64, x: &[f64]) -> f64 {
         self.smooth_until.next_up() - self.wheel(t, x).position[0]
     }
 
-    /// Notes which vertical steps of the road lie behind the wheel.
+    /// Updates the position of the next vertical step after the wheel has passed one.
     pub fn pass_steps(&mut self, t: f64, x: &[f64]) {
         if self.tyre.geometry() == Geometry::Point {
             let here = self.wheel(t, x).position[0];
@@ -306,7 +306,8 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
         }
     }
 
-    /// The first time after `from` at which the rim of the tyre comes over an edge of the road, seen from time `t`.
+    /// The first time after `from` at which the rim of the tyre reaches or leaves an edge of the road, predicted at
+    /// time `t`.
     pub fn next_bend(&self, t: f64, x: &[f64], dx: &[f64], from: f64) -> f64 {
         let (wheel, radius) = (self.wheel(t, x), self.tyre.radius());
         let acceleration = [self.wheel.x.map_or(0.0, |x| dx[x[1]]), dx[self.wheel.z[1]]];
@@ -316,7 +317,8 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
         times.fold(f64::INFINITY, f64::min)
     }
 
-    /// The wheel's centre: above x = 0 at t = 0, and `x_wheel` ahead of a car of constant speed.
+    /// The wheel's centre. It is above x = 0 at t = 0, and then moves with the constant speed plus the displacement
+    /// `x_wheel`.
     #[inline]
     fn wheel(&self, t: f64, x: &[f64]) -> Wheel {
         let [z, vz] = self.wheel.z.map(|place| x[place]);
@@ -327,15 +329,15 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
         }
     }
 
-    /// What a contact gives to the model. Without one nothing pushes, and the tyre's link is at rest.
+    /// The inputs of the model from a contact. Without contact, the force is zero and the tyre's link is at rest.
     #[inline]
     fn contact(&self, touch: Option<&Touch>, x: &[f64]) -> Contact {
         let law = |s: f64, v: f64| self.model.contact_force(&self.constants, x, s, v);
         touch.map_or(Contact::default(), |touch| touch.force(law))
     }
 
-    /// The forces that move the wheel from its rest: beside the contact's, the static load, which the preloads of the
-    /// suspension put on it, and the traction.
+    /// The forces on the wheel relative to rest: that of the contact, minus the static load, which the preloads of the
+    /// suspension balance, plus the traction.
     #[inline]
     pub fn driven(&self, mut contact: Contact) -> Contact {
         contact.force[0] -= self.load;
@@ -347,22 +349,22 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
 fn edges(geometry: Geometry, road: &Road) -> Vec<[f64; 2]> {
     match geometry {
         Geometry::Area | Geometry::Radial => road.edges().collect(),
-        // A point feels a step as an event, and nothing else before it is on it.
+        // For a point contact, a step is an event, and nothing acts before the point reaches it.
         Geometry::Point => Vec::new(),
     }
 }
 
-/// Where the ground of a road becomes level for good, m; minus infinity where it always is.
+/// Position from which a road stays level, m; minus infinity if it is level everywhere.
 fn level_from(road: &Road) -> f64 {
     let uneven = road.vertices().windows(2).rfind(|pair| pair[0][1] != pair[1][1]);
     uneven.map_or(f64::NEG_INFINITY, |pair| pair[1][0])
 }
 
-/// After which times the rim of a circle comes over a point and leaves it, s; not numbers where it does not.
+/// Times until the rim of a circle reaches a point and until it leaves it, s; NaN if it does not.
 fn crossings(wheel: &Wheel, acceleration: [f64; 2], radius: f64, point: &[f64; 2]) -> [f64; 2] {
     let ([x, z], [vx, vz], [ax, az]) = (wheel.position, wheel.velocity, acceleration);
     let (dx, dz) = (point[0] - x, point[1] - z);
-    // At constant velocity the distance squared is a parabola of time; the acceleration is good for a correction.
+    // At constant velocity the squared distance is a parabola of time; the acceleration gives a correction.
     let (squared, along) = (vx * vx + vz * vz, dx * vx + dz * vz);
     let root = (along * along - squared * (dx * dx + dz * dz - radius * radius)).sqrt();
     [-root, root].map(|root| {

@@ -1,4 +1,4 @@
-//! A shortcut for linear axles: an exponential method wherever the force of the tyre is smooth.
+//! A faster method for linear axles: an exponential method while the force of the tyre is smooth.
 //!
 //! The steps of the general method are limited by the stability of the fastest mode, and each takes six evaluations. The
 //! exponential method has no such limit and takes one: it steps from sample to sample as long as its polynomials approximate
@@ -19,7 +19,7 @@ pub(super) struct Shortcut {
     times: Vec<f64>,
     /// Index of the next of them.
     next: usize,
-    /// True within a step of the exponential method.
+    /// Number of the shortest steps in one step of the exponential method.
     stride: usize,
     /// Forces at the last times, between which the force is smooth.
     past: Vec<[f64; 2]>,
@@ -30,16 +30,17 @@ pub(super) struct Shortcut {
     effort: Effort,
 }
 
-/// A step on uneven ground, s, or a little less; on level ground it is twice that. Where samples are further apart, it is
-/// half of their distance, or all of it for a tyre that feels single points, on level ground, too.
+/// Approximate step on uneven ground, s; on level ground it is twice that. If samples are further apart, it is half of
+/// their distance, or all of it for a point contact, which steps so on level ground too.
 ///
-/// The force alone tells whether that is short enough. What a light mass does on its own is stepped exactly, but filled in
-/// between steps by polynomials: where these take 2 ms, that is good up to some 100 Hz, and wrong from 200 Hz on.
+/// The error control judges only the force. Free vibrations of a light mass are exact at the steps but interpolated by
+/// polynomials between them: with steps of 2 ms this is accurate up to about 100 Hz, and wrong above 200 Hz.
 const STEP: f64 = 1e-3;
 
 impl Shortcut {
-    /// For a ride that is recorded on a grid. None where the axle is not linear, or where steps of a given length were
-    /// asked for. The method of another ride of the `same` car spares an exponential, where its steps are as long.
+    /// A shortcut for a ride that is recorded on a grid. `None` if the axle is not linear, or if the settings ask for
+    /// steps of a given length. The method of another ride of the `same` car with the same step saves a matrix
+    /// exponential.
     pub fn new<M: Model + ?Sized>(
         rolling: &Rolling<'_, M>,
         about: &About,
@@ -131,21 +132,21 @@ impl Shortcut {
         good.then_some((time, smooth.contact))
     }
 
-    /// True if steps may be twice as long from here on.
+    /// True if steps may be twice as long from now on.
     #[inline(always)]
     pub fn wants_longer<M: Model + ?Sized>(&self, rolling: &Rolling<'_, M>) -> bool {
         let left = self.times.len() - self.next;
         self.stride == 1 && left.is_multiple_of(2) && rolling.is_level(self.centre) && self.adams.may_double()
     }
 
-    /// Doubles them if enough past forces are known.
+    /// Doubles the step if enough past forces are known.
     pub fn lengthen(&mut self) {
         if self.adams.lengthen() {
             self.stride = 2;
         }
     }
 
-    /// When the next step ends, s; none after the last.
+    /// The end of the next step, s; `None` after the last.
     #[inline(always)]
     pub fn ahead(&self) -> Option<f64> {
         self.times.get(self.next + self.stride - 1).copied()
@@ -169,7 +170,7 @@ impl Shortcut {
         }
     }
 
-    /// The method that makes the steps.
+    /// The exponential method.
     pub fn method(&mut self) -> &mut ExponentialAdams<2> {
         &mut self.adams
     }

@@ -2,10 +2,9 @@
 //!
 //! Along each direction of the parameters the variational equation `dS/dt = ∂f/∂x S + ∂f/∂p d` is integrated with the
 //! motion, under the same error control. Its right-hand side is a central difference of `f` along `(S, d)`: internal
-//! differentiation (Bock, "Recent advances in parameter identification techniques for ODE", 1983), which needs nothing
-//! of a model but its equations, and whose error of about 1e-9 is none of the integration. The force of an
-//! [area](crate::tyre::Geometry::Area) tyre is continuous where it bends, leaves the ground and finds it again, so that the
-//! sensitivities do not jump there.
+//! differentiation (Bock, "Recent advances in parameter identification techniques for ODE", 1983). It needs only the
+//! equations of a model; its error is about 1e-9. The force of an [area](crate::tyre::Geometry::Area) tyre is
+//! continuous at kinks, and when the tyre leaves and regains the ground, so the sensitivities do not jump there.
 
 use super::car::Car;
 use super::failure::SimulateError;
@@ -19,8 +18,8 @@ use crate::solver::{self, After, DormandPrince, Event, Step, System};
 /// A ride, and its derivatives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tangent {
-    /// Each output of the model, through [`AntiAlias`](super::AntiAlias); after them the vertical force of the tyre
-    /// on the wheel, N, as it is at the samples.
+    /// Each output of the model, through [`AntiAlias`](super::AntiAlias), then the vertical force of the tyre on the
+    /// wheel, N, at the samples and not filtered.
     pub signals: Vec<Vec<f64>>,
     /// For each direction the derivative of each signal.
     pub slopes: Vec<Vec<Vec<f64>>>,
@@ -84,14 +83,14 @@ fn along(from: &[f64], direction: &[f64], step: f64) -> Vec<f64> {
 struct Varied<'a, M: ?Sized> {
     rolling: Rolling<'a, M>,
     moved: Vec<[Rolling<'a, M>; 2]>,
-    /// Of the model.
+    /// Number of states of the model.
     states: usize,
     outputs: usize,
     tape: Tape,
-    /// Room for a state with its sensitivities, and for the rates and signals of a point.
+    /// Buffers for a state with its sensitivities, and for the rates and signals of a point.
     state: Vec<f64>,
     rates: Vec<f64>,
-    /// Room for the rate and outputs of a displaced model.
+    /// Buffers for the displaced models.
     neighbour: [Neighbour; 2],
 }
 

@@ -1,10 +1,10 @@
-//! How rides of a linear axle change with its parameters, to first order and on the grid of the samples.
+//! Derivatives of a ride of a linear axle by its parameters, on the grid of the samples.
 //!
-//! But for what the contact gives all is linear: its force, and to a tyre with states of its own its deflection and rate. So
-//! the variational equation of each parameter, `dS/dt = A S + B (K S + ∂g/∂p) + ∂A/∂p x + ∂B/∂p g`, has the matrix of the axle
-//! and the derivatives `K` of the contact in common with all others, and the parameters are stepped together. Between points
-//! what acts is linear in time: a derivative is good to about a hundredth, which a least-squares fit needs no better, and
-//! [`tangent`](super::tangent()) does without.
+//! The axle is linear apart from the inputs g from the contact: its force, and for a tyre with inner states its
+//! deflection and rate. The variational equations of all parameters, `dS/dt = A S + B (K S + ∂g/∂p) + ∂A/∂p x + ∂B/∂p
+//! g`, share the matrix of the axle and the derivatives `K` of the contact, so they are stepped together. Between
+//! points the inputs are taken as linear in time. A derivative is accurate to about one percent, which suffices for a
+//! least-squares fit; [`tangent`](super::tangent()) is not limited by the grid.
 
 use std::array;
 
@@ -19,12 +19,12 @@ use crate::model::{Contact, Model};
 use crate::solver::Hold;
 use crate::tyre::Geometry;
 
-/// Derivatives of some `outputs` of a ride, sampled like these: for each of the `moved` parameter sets, by what it was
-/// changed by. They are stepped at so many points a sample: with two they are good to about a hundredth of the signal, with one
-/// to about a twentieth. None where the axle is not linear, or its tyre feels single points of the road.
+/// Derivatives of some `outputs` of a ride at its samples, for each of the `moved` parameter sets by its change. With
+/// two points per sample they are accurate to about 1 % of the signal, with one to about 5 %. `None` if the axle is not
+/// linear, or has a point contact.
 ///
 /// # Errors
-/// As [`ride`](super::ride()), also where a car with a moved set cannot stand.
+/// Fails as [`ride`](super::ride()) does, and if a car with a moved set has no static equilibrium.
 pub fn variation<M: Model + ?Sized>(
     car: &Car<'_, M>,
     drive: &Drive<'_>,
@@ -58,10 +58,10 @@ pub fn variation<M: Model + ?Sized>(
     Ok(Variation::new(rolling, axle, directions, grid, begins, x).map(Variation::slopes))
 }
 
-/// What a contact gives: see [`Rolling::given`].
+/// Number of inputs from a contact, see [`Rolling::given`].
 const GIVEN: usize = 4;
 
-/// The matrices of an axle: of the rates of its states, and of some outputs.
+/// The matrices of an axle for the rates of its states and for some outputs.
 struct Axle {
     a: DMatrix<f64>,
     b: DMatrix<f64>,
@@ -70,7 +70,7 @@ struct Axle {
 }
 
 impl Axle {
-    /// A linear axle, asked column by column.
+    /// The matrices of a linear axle, evaluated column by column.
     fn of<M: Model + ?Sized>(rolling: &Rolling<'_, M>, outputs: &[usize]) -> Self {
         let (n, signals) = rolling.sizes();
         let mut axle = Self {
@@ -108,26 +108,26 @@ impl Axle {
     }
 }
 
-/// An entry of a matrix that differs: its row, its column and its derivative.
+/// A changed entry of a matrix: row, column and derivative.
 type Entry = (usize, usize, f64);
 
-/// The derivatives of all entries of a matrix that have one.
+/// The nonzero derivatives of a matrix, from two values and the change of the parameter.
 fn changes(from: &DMatrix<f64>, to: &DMatrix<f64>, by: f64) -> Vec<Entry> {
     let places = (0..from.ncols()).flat_map(|column| (0..from.nrows()).map(move |row| (row, column)));
     let entries = places.map(|(row, column)| (row, column, (to[(row, column)] - from[(row, column)]) / by));
     entries.filter(|(.., slope)| *slope != 0.0).collect()
 }
 
-/// What one parameter changes.
+/// Effect of one parameter.
 struct Direction<'a, M: ?Sized> {
-    /// The rows of these are places among the forced states, once these are known.
+    /// Derivatives of the matrices. Rows of `a` and `b` become positions among the forced states once these are known.
     a: Vec<Entry>,
     b: Vec<Entry>,
     c: Vec<Entry>,
     d: Vec<Entry>,
-    /// At rest.
+    /// Derivative of the state at rest.
     state: Vec<f64>,
-    /// The car that has it changed, and by how much, where its tyre pushes otherwise in the same place.
+    /// The car with the changed parameter, and the change, if its contact gives other inputs at the same state.
     other: Option<(Rolling<'a, M>, f64)>,
 }
 
@@ -150,42 +150,43 @@ impl<'a, M: Model + ?Sized> Direction<'a, M> {
     }
 }
 
-/// A ride and what its parameters change, at a point of the grid.
+/// A ride and its derivatives at a point of the grid.
 struct Variation<'a, M: ?Sized> {
     rolling: Rolling<'a, M>,
     axle: Axle,
     directions: Vec<Direction<'a, M>>,
-    /// States on which anything acts beside the others,
+    /// States on which the contact or a parameter acts directly.
     forced: Vec<usize>,
     hold: Hold,
-    /// and what the contact gives at the end of a step adds to the states there.
+    /// Effect of the contact's inputs at the end of a step on the states there.
     of_contact: DMatrix<f64>,
     tape: Tape,
     time: f64,
     spacing: f64,
     x: Vec<f64>,
-    /// The states that the contact depends on, each with a small change.
+    /// The states on which the contact depends, each with a small change for a difference quotient.
     touching: Vec<(usize, f64)>,
     contact: Touching,
-    /// By how much that has changed in the last step.
+    /// Change of the contact's inputs in the last step.
     grew: [f64; GIVEN],
-    /// There is a value for each parameter, and room up to so many.
+    /// Number of parameters, rounded up to a multiple of the lanes.
     lanes: usize,
-    /// Of each state, of what acts on each forced one, and of what the contact gives, the derivatives.
+    /// Derivatives of each state, of the sum that acts on each forced state, and of the contact's inputs.
     slopes: Vec<f64>,
     acting: Vec<f64>,
     given_slopes: [Vec<f64>; GIVEN],
-    /// Room for the next states, for their derivatives, for what acted before, and for the derivatives of the outputs.
+    /// Buffers for the next states, for their derivatives, for the previous sums, and for the derivatives of the
+    /// outputs.
     next: Vec<f64>,
     next_slopes: Vec<f64>,
     before: Vec<f64>,
     shown: Vec<f64>,
 }
 
-/// What a contact gives at a point.
+/// Inputs from a contact at a point.
 struct Touching {
     given: [f64; GIVEN],
-    /// Its derivatives by the states that it depends on.
+    /// Derivatives by the states on which they depend.
     by_state: Vec<(usize, [f64; GIVEN])>,
 }
 
@@ -210,7 +211,7 @@ fn slope(from: [f64; GIVEN], to: [f64; GIVEN], by: f64) -> [f64; GIVEN] {
     array::from_fn(|axis| (to[axis] - from[axis]) / by)
 }
 
-/// Adds a multiple of numbers to others. Most factors of an axle are zero.
+/// Adds a multiple of numbers to others; zero factors, the most frequent ones, are skipped.
 fn add(factor: f64, of: &[f64], to: &mut [f64]) {
     if factor == 0.0 {
         return;
@@ -219,8 +220,8 @@ fn add(factor: f64, of: &[f64], to: &mut [f64]) {
 }
 
 impl<'a, M: Model + ?Sized> Variation<'a, M> {
-    /// At the last point before something `begins` to move the car from its rest `x`; none where the axle is too fast for the
-    /// grid by far.
+    /// Starts at the last point before the time `begins` at which the car starts to move from its rest `x`. `None` if
+    /// the axle is much too fast for the grid.
     fn new(
         rolling: Rolling<'a, M>,
         axle: Axle,
@@ -238,7 +239,7 @@ impl<'a, M: Model + ?Sized> Variation<'a, M> {
         let hold = Hold::new(&axle.a, &forced, spacing)?;
         let pushed = DMatrix::from_fn(forced.len(), GIVEN, |place, axis| axle.b[(forced[place], axis)]);
         let time = grid.start() + ((begins - grid.start()) / spacing).floor() * spacing;
-        // A multiple of what is computed together.
+        // A multiple of the number that is computed together.
         let lanes = directions.len().next_multiple_of(4);
         let mut slopes = vec![0.0; x.len() * lanes];
         for (lane, direction) in directions.iter().enumerate() {
@@ -300,11 +301,11 @@ impl<'a, M: Model + ?Sized> Variation<'a, M> {
         (0..self.directions.len()).map(of).collect()
     }
 
-    /// Goes on to the next point.
+    /// Advances to the next point.
     fn advance(&mut self) {
         std::mem::swap(&mut self.before, &mut self.acting);
         self.advance_ride();
-        // What the contact adds at the end of the step follows from the states without it.
+        // The effect of the contact at the end of the step follows from the states without that effect.
         self.act_beside_contact();
         let forces = [&self.before, &self.acting].map(Vec::as_slice);
         self.hold.step(self.lanes, &self.slopes, forces, &mut self.next_slopes);
@@ -327,7 +328,8 @@ impl<'a, M: Model + ?Sized> Variation<'a, M> {
         self.act_by_contact();
     }
 
-    /// The ride itself: what the contact gives is foreseen from its last change, and corrected by its derivatives.
+    /// Advances the ride itself: the contact's inputs are predicted from their last change and corrected by their
+    /// derivatives.
     fn advance_ride(&mut self) {
         let was = self.contact.given;
         let foreseen: [f64; GIVEN] = array::from_fn(|axis| was[axis] + self.grew[axis]);
@@ -363,7 +365,8 @@ impl<'a, M: Model + ?Sized> Variation<'a, M> {
         self.grew = array::from_fn(|axis| self.contact.given[axis] - was[axis]);
     }
 
-    /// From what the contact would give by the states without it to what it gives: it moves them at once.
+    /// The matrix from the contact's inputs at the states without its effect to those with it, since the contact
+    /// changes the states in the same step.
     fn solver(&self) -> Matrix4<f64> {
         let mut answers = Matrix4::identity();
         for (state, by_state) in &self.contact.by_state {
@@ -372,7 +375,7 @@ impl<'a, M: Model + ?Sized> Variation<'a, M> {
         answers.try_inverse().unwrap_or_else(Matrix4::identity)
     }
 
-    /// The derivatives of what the contact gives, by those of the states.
+    /// Computes the derivatives of the contact's inputs from those of the states.
     fn vary_given(&mut self) {
         self.given_slopes.iter_mut().for_each(|slopes| slopes.fill(0.0));
         let others = self.directions.iter().map(|own| own.other.as_ref()).enumerate();
@@ -393,7 +396,7 @@ impl<'a, M: Model + ?Sized> Variation<'a, M> {
         }
     }
 
-    /// What acts on the derivatives of the forced states, beside the states and the contact.
+    /// Computes the direct effect of the parameters on the derivatives of the forced states.
     fn act_beside_contact(&mut self) {
         self.acting.fill(0.0);
         for (lane, direction) in self.directions.iter().enumerate() {
@@ -406,7 +409,7 @@ impl<'a, M: Model + ?Sized> Variation<'a, M> {
         }
     }
 
-    /// Adds what the contact does.
+    /// Adds the effect of the contact.
     fn act_by_contact(&mut self) {
         for (&state, acting) in self.forced.iter().zip(self.acting.chunks_exact_mut(self.lanes)) {
             for (axis, of_given) in self.given_slopes.iter().enumerate() {
@@ -415,7 +418,7 @@ impl<'a, M: Model + ?Sized> Variation<'a, M> {
         }
     }
 
-    /// The derivatives of the outputs here, output by output.
+    /// Computes the derivatives of the outputs at this point, output by output.
     fn show(&mut self) {
         self.shown.fill(0.0);
         for (output, shown) in self.shown.chunks_exact_mut(self.lanes).enumerate() {

@@ -1,9 +1,10 @@
-//! Linear systems that forces drive, in steps of one length and of its doubles: an exponential Adams method.
+//! An exponential Adams method for linear systems under forces, with steps of one length and its doubles.
 //!
-//! In `dx/dt = A x + B f(t, x)` what is linear is integrated exactly, however fast it decays or vibrates. The forces are
-//! taken from the polynomial through their past; one evaluation at the end of a step tells how far that is off, which
-//! corrects the step and judges it. M. Hochbruck, A. Ostermann, "Exponential integrators", Acta Numerica 19 (2010),
-//! section 2.5, with the correction of the predictor-corrector pairs in Hairer, Nørsett, Wanner, III.1.
+//! In `dx/dt = A x + B f(t, x)` the linear part is integrated exactly, however fast it decays or vibrates. The forces
+//! are extrapolated by the polynomial through their past values. One evaluation at the end of a step gives the error of
+//! this prediction, which corrects the step and estimates its error. M. Hochbruck, A. Ostermann, "Exponential
+//! integrators", Acta Numerica 19 (2010), section 2.5, with the correction of the predictor-corrector pairs in Hairer,
+//! Nørsett, Wanner, III.1.
 
 // Several systems integrated together.
 mod abreast;
@@ -21,7 +22,7 @@ pub trait Driven<const F: usize> {
     /// Writes `dx = A x + B force`.
     fn rate(&self, x: &[f64], force: [f64; F], dx: &mut [f64]);
 
-    /// The forces at time `t`; `None` where they are not smooth.
+    /// The forces at time `t`; `None` if they are not smooth there.
     fn force(&mut self, t: f64, x: &[f64]) -> Option<[f64; F]>;
 }
 
@@ -32,30 +33,30 @@ const KEPT: usize = 2 * PAST - 1;
 #[derive(Clone)]
 pub struct ExponentialAdams<const F: usize> {
     parts: Vec<Part>,
-    /// For the shortest step, for twice that, and so on.
+    /// Corrections for the shortest step, for twice that, and so on.
     corrections: Vec<Corrections<F>>,
     /// Index of the step length in use.
     rung: usize,
     /// The state.
     state: Vec<f64>,
-    /// The next one, as it is foreseen.
+    /// The predicted next state.
     ahead: Vec<f64>,
-    /// By how much the error of each state is more than allowed.
+    /// Excess of the error of each state over its tolerance.
     excess: Vec<f64>,
-    /// Each force at the points of the past, the last first.
+    /// Past values of each force, the last first.
     past: [[f64; KEPT]; F],
-    /// Number of points at which they are known.
+    /// Number of known past values.
     known: usize,
     /// The shortest step, s.
     step: f64,
 }
 
-/// How each state is corrected for a unit of each force that was not foreseen.
+/// Correction of each state for a unit error of the prediction of each force.
 #[derive(Clone)]
 struct Corrections<const F: usize> {
     whole: [Vec<f64>; F],
-    /// How much of that is by the last point of the past, without which the polynomial would be one order lower: the
-    /// error that is judged.
+    /// The part of the correction that is due to the last past value, without which the polynomial would be one order
+    /// lower: the estimated error.
     last_order: [Vec<f64>; F],
 }
 
@@ -70,8 +71,8 @@ impl<const F: usize> Corrections<F> {
 }
 
 impl<const F: usize> ExponentialAdams<F> {
-    /// For steps of `step` (s) of a system of `states` states, which may be doubled so many times. None where the system is
-    /// not finite, or moves a million times too much in a step.
+    /// A method for a system of `states` states with steps of `step` (s), which may be doubled `doublings` times.
+    /// `None` if the system is not finite, or if its norm times the step exceeds a million.
     pub fn new(system: &impl Driven<F>, states: usize, step: f64, doublings: usize) -> Option<Self> {
         let linear = Linear::new(system, states, step);
         let mut parts = linear.parts();
@@ -98,12 +99,13 @@ impl<const F: usize> ExponentialAdams<F> {
         })
     }
 
-    /// True where it is for such steps.
+    /// True if it has these steps.
     pub fn steps_by(&self, step: f64, doublings: usize) -> bool {
         self.step == step && self.corrections.len() == doublings + 1
     }
 
-    /// Begins at state `x`, with the shortest step and the forces of points that far apart, the present ones last.
+    /// Begins at state `x` with the shortest step. `past` are forces at points with the distance of this step, the
+    /// present ones last.
     pub fn begin(&mut self, x: &[f64], past: &[[f64; F]; PAST]) {
         (self.rung, self.known) = (0, PAST);
         self.state.copy_from_slice(x);
@@ -115,12 +117,12 @@ impl<const F: usize> ExponentialAdams<F> {
         self.prepare();
     }
 
-    /// True if the step is to be doubled.
+    /// True if the step may be doubled.
     pub fn may_double(&self) -> bool {
         self.rung + 1 < self.corrections.len()
     }
 
-    /// Doubles the step if that is intended and enough past forces are known. Returns whether it did.
+    /// Doubles the step if that is allowed and enough past forces are known. Returns true if it did.
     pub fn lengthen(&mut self) -> bool {
         let longer = self.may_double() && self.known == KEPT;
         if longer {
@@ -133,7 +135,7 @@ impl<const F: usize> ExponentialAdams<F> {
         longer
     }
 
-    /// Prepares a step from the state as it is.
+    /// Prepares a step from the present state.
     fn prepare(&mut self) {
         for part in &mut self.parts {
             for (from, &place) in part.from.iter_mut().zip(&part.states) {
@@ -143,8 +145,8 @@ impl<const F: usize> ExponentialAdams<F> {
         }
     }
 
-    /// Steps to time `t`, and says whether it did: where the forces are not smooth, or the error is more than `relative`
-    /// of a state and `absolute`, all stays as it was.
+    /// Steps to time `t` and returns true. If the forces are not smooth, or if the error exceeds `relative` times a
+    /// state plus `absolute`, it changes nothing and returns false.
     #[inline(always)]
     pub fn advance(&mut self, system: &mut impl Driven<F>, t: f64, relative: f64, absolute: &[f64]) -> bool {
         for part in &mut self.parts {
@@ -209,20 +211,20 @@ impl<const F: usize> ExponentialAdams<F> {
     }
 }
 
-/// States that do not depend on any others, and the forces that drive them.
+/// States that depend on no others, with the forces that drive them.
 ///
-/// The next state is foreseen from the last as that was foreseen; what corrects it comes with the forces. So a step need
-/// not wait for the forces of the last one to be known before it begins.
+/// The next state is predicted from the predicted last one; its correction is added with the forces. So a step can
+/// begin before the forces of the last one are known.
 #[derive(Clone)]
 struct Part {
     states: Vec<usize>,
     forces: Vec<usize>,
-    /// For each rung what the next state is of each entry of `from`: columns of four rows, block of rows by block.
+    /// For each step length the matrix from `from` to the next state: columns of four rows, by blocks of rows.
     propagators: Vec<Vec<Lanes>>,
-    /// The last state, as it was foreseen; of each force those at the points of the past, the last first, and by how much
-    /// that is not what was foreseen.
+    /// The predicted last state, then for each force its past values, the last first, and the error of its last
+    /// prediction.
     from: Vec<f64>,
-    /// The next state, as it is foreseen.
+    /// The predicted next state.
     ahead: Vec<f64>,
 }
 
@@ -238,8 +240,8 @@ impl Part {
         }
     }
 
-    /// Adds what a step does, by the flow of states and derivatives of forces over it; `unit` of the step is that of their
-    /// time.
+    /// Adds a step length, from the flow of states and derivatives of forces over it. `unit` is the unit of their time,
+    /// as a fraction of the step.
     fn add_rung<const F: usize>(&mut self, flow: &Matrix, unit: f64, corrections: &mut Corrections<F>) {
         let n = self.states.len();
         let mut made_of = Matrix::zero(flow.size());
@@ -273,7 +275,7 @@ impl Part {
         self.propagators.push((0..n).step_by(4).flat_map(block).collect());
     }
 
-    /// Foresees the next state.
+    /// Predicts the next state.
     #[inline(always)]
     fn foresee(&mut self, rung: usize, ahead: &mut [f64]) {
         widest(Product {
@@ -293,7 +295,7 @@ impl Part {
         self.from[..n].copy_from_slice(&self.ahead[..n]);
     }
 
-    /// Takes the forces at the points of the past, and by how much those at the last are off.
+    /// Takes the past forces, and the errors of their last prediction.
     #[inline(always)]
     fn take_forces<const F: usize>(&mut self, past: &[[f64; KEPT]; F], off: &[f64; F]) {
         let places = self.from[self.states.len()..].as_chunks_mut::<{ PAST + 1 }>().0;
@@ -355,9 +357,9 @@ impl<const F: usize> Linear<F> {
         (0..n).filter_map(part).collect()
     }
 
-    /// What makes the rate of a part, and of the derivatives of the forces that drive it: each is the rate of the one
-    /// before. So its exponential says what a step does under forces that are polynomials (C. F. Van Loan, "Computing
-    /// integrals involving the matrix exponential", IEEE Trans. Autom. Control 23, 1978).
+    /// The matrix of the rates of a part and of the derivatives of its forces, each of which is the rate of the one
+    /// before. Its exponential gives the effect of a step under forces that are polynomials in time (C. F. Van Loan,
+    /// "Computing integrals involving the matrix exponential", IEEE Trans. Autom. Control 23, 1978).
     fn matrix(&self, part: &Part) -> Matrix {
         let mut matrix = Matrix::zero(part.from.len());
         for (row, &to) in part.states.iter().enumerate() {
@@ -392,7 +394,7 @@ impl Loops for Product<'_> {
         let factors = self.by.as_chunks::<4>().0;
         let blocks = self.blocks.chunks_exact(self.by.len());
         for (result, block) in self.result.as_chunks_mut::<4>().0.iter_mut().zip(blocks) {
-            // Four sums, none of which waits for the others.
+            // Four independent sums.
             let mut sums = [[0.0; 4]; 4];
             for (columns, factors) in block.as_chunks::<4>().0.iter().zip(factors) {
                 for k in 0..4 {

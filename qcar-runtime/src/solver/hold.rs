@@ -21,7 +21,7 @@ impl Hold {
     /// finite, or if its norm times the step exceeds a million.
     pub fn new(a: &DMatrix<f64>, forced: &[usize], step: f64) -> Option<Self> {
         let (n, m) = (a.nrows(), forced.len());
-        // In time of a step: the states, the forces at its beginning, and what these change by until its end.
+        // With the step as the unit of time: the states, the forces at its beginning, and their changes until its end.
         let mut whole = Matrix::zero(n + 2 * m);
         for row in 0..n {
             for column in 0..n {
@@ -73,7 +73,7 @@ struct Step<'a> {
 }
 
 impl Step<'_> {
-    /// Of some neighbouring systems from one on: their sums stay in registers.
+    /// The sums of `N` neighbouring systems, which stay in registers.
     #[inline(always)]
     fn sums<const N: usize>(&self, factors: &[f64], from: usize) -> [f64; N] {
         let mut sums = [0.0; N];
@@ -128,7 +128,8 @@ mod tests {
         let stiffness = frequency * frequency + decay * decay;
         let a = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -stiffness, -2.0 * decay]);
         let hold = Hold::new(&a, &[1], step).expect("it is finite");
-        // Under the force `stiffness (t + 2 decay / stiffness)` the mass moves as `t`, and around that on its own.
+        // Under the force `stiffness (t + 2 decay / stiffness)` the particular solution is `t`; the free vibration is
+        // added to it.
         let force = |t: f64| stiffness * t + 2.0 * decay;
         let own = |t: f64| {
             let (sin, cos) = (frequency * t).sin_cos();

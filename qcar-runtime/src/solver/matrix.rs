@@ -16,7 +16,7 @@ pub(super) struct Matrix {
 }
 
 impl Matrix {
-    /// Zero, of this size or the next multiple of four.
+    /// A zero matrix of this size, or of the next multiple of four.
     pub fn zero(size: usize) -> Self {
         let size = size.next_multiple_of(4);
         Self {
@@ -25,7 +25,7 @@ impl Matrix {
         }
     }
 
-    /// Rows, and columns.
+    /// Number of rows and of columns.
     pub fn size(&self) -> usize {
         self.size
     }
@@ -36,19 +36,20 @@ impl Matrix {
         self.panels[column / 4 * self.size + row][column % 4]
     }
 
-    /// An entry, to be changed.
+    /// A mutable entry.
     #[inline]
     pub fn entry_mut(&mut self, row: usize, column: usize) -> &mut f64 {
         &mut self.panels[column / 4 * self.size + row][column % 4]
     }
 
-    /// Its exponential: the series for a small part of it, squared again and again (N. J. Higham, A. H. Al-Mohy,
-    /// "Computing matrix functions", Acta Numerica 19, 2010, section 4). None where it is not finite, or the matrix far too
-    /// large.
+    /// Its exponential by scaling and squaring: a power series of a fraction of the matrix, squared repeatedly (N. J.
+    /// Higham, A. H. Al-Mohy, "Computing matrix functions", Acta Numerica 19, 2010, section 4). `None` if it is not
+    /// finite, or if the norm of the matrix exceeds a million.
     pub fn exponential(&self) -> Option<Self> {
         let powers = [self.clone(), self.times(self)];
         let fourth = powers[1].times(&powers[1]);
-        // By the norm of a power: the states have units, and what a force does to a velocity says little of speeds.
+        // Uses the norm of a power: states have units, so large entries between states of different units do not mean a
+        // fast system.
         let size = fourth.norm().powf(0.25);
         let squarings = (size / SMALL).log2().ceil().max(0.0) as i32;
         (size <= LARGE).then(|| {
@@ -102,7 +103,7 @@ impl Matrix {
     /// The largest sum of a row.
     fn norm(&self) -> f64 {
         let row = |row: usize| (0..self.size).map(|column| self.entry(row, column).abs()).sum();
-        // What is not a number is not lost.
+        // Keeps a NaN.
         (0..self.size)
             .map(row)
             .fold(0.0, |most, sum: f64| if sum <= most { most } else { sum })
@@ -143,11 +144,11 @@ impl Loops for Product<'_> {
     }
 }
 
-/// So many terms of the series are summed up,
+/// Number of terms of the series.
 const TERMS: usize = 16;
-/// and the first that is left out is below 1e-13 for what is no larger than this.
+/// Largest norm for which the first omitted term is below 1e-13.
 const SMALL: f64 = 1.0;
-/// Nothing is left of what decays so fast, or it turns so often that no digit is right.
+/// Largest norm: a faster mode has decayed completely, or has turned so often that no digit would be right.
 const LARGE: f64 = 1e6;
 
 /// `xⁿ / n!`.

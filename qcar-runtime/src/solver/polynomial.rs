@@ -1,23 +1,23 @@
-//! The polynomials through the forces of the past, by which an Adams method goes on.
+//! The polynomials through past forces of an Adams method.
 
 use std::array;
 
-/// The forces at so many points of the past make the polynomial that extrapolates them.
+/// Number of past values that determine the extrapolating polynomial.
 pub const PAST: usize = 5;
 
-/// Coefficients of the powers of the part of a step that is over.
+/// Coefficients of the powers of the elapsed fraction of a step.
 pub(super) type Polynomial = [f64; PAST + 1];
 
-/// One at a point of the past and zero at all others; they lie at 0, -1, -2, ….
+/// Polynomials that are one at one past point and zero at all others; the points are 0, -1, -2, ….
 pub(super) const THROUGH: [Polynomial; PAST] = through();
-/// What the forces turn out to be more than foreseen: zero at the points of the past and one at the end of the step.
+/// Shape of the error of a prediction: zero at the past points and one at the end of the step.
 pub(super) const UNFORESEEN: Polynomial = rising(0.0);
-/// By how much it would be less if the last point of the past were left out of the polynomial.
+/// Its reduction if the polynomial did not use the last past point.
 pub(super) const LAST_ORDER: Polynomial = rising(-1.0);
-/// How the polynomial through the past goes on for a step: binomial coefficients with alternating signs.
+/// Coefficients of the past values in the extrapolation by one step: binomial coefficients with alternating signs.
 pub(super) const EXTRAPOLATION: [f64; PAST] = [5.0, -10.0, 10.0, -5.0, 1.0];
 
-/// The derivatives of a polynomial where a step begins, by a time of which the step has `1 / unit`.
+/// The derivatives of a polynomial at the beginning of a step, by time in units of `unit` steps.
 pub(super) fn derivatives(polynomial: &Polynomial, unit: f64) -> Polynomial {
     let mut factor = 1.0;
     array::from_fn(|power| {

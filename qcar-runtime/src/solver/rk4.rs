@@ -97,7 +97,7 @@ impl Rk4 {
         self.watch.begin(system, t, LOOK_AHEAD * self.step, &self.x, &self.k[0]);
     }
 
-    /// One step to `x_end` with its slope there. False where it is not finite.
+    /// One step to `x_end` with its slope there. Returns false if it is not finite.
     fn advance<S: System>(&mut self, system: &mut S, t: f64, h: f64) -> bool {
         let derivative = |c: f64, x: &[f64], k: &mut [f64]| system.derivative(t + c * h, x, k);
         step(derivative, h, &self.x, &mut self.k, &mut self.x_end);

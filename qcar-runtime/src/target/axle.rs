@@ -1,4 +1,4 @@
-//! An axle on its ground as designs: knobs move its parameters, readings are its results.
+//! An axle as a family of designs: knobs change its parameters, readings are its results.
 
 use rayon::prelude::*;
 
@@ -10,27 +10,27 @@ use crate::sensitivity::Chance;
 /// Effect of a knob on a parameter: the parameter is the knob times a factor, plus a constant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Move {
-    /// Place of the knob.
+    /// Position of the knob.
     pub knob: usize,
     /// Index of the parameter; parameters tied to it follow.
     pub parameter: usize,
-    /// How much it moves with the knob.
+    /// The factor.
     pub factor: f64,
     /// The constant.
     pub constant: f64,
 }
 
-/// An axle whose parameters are moved.
+/// An axle whose parameters follow knobs.
 pub struct Axle<'a> {
     /// The metrics.
     pub ground: &'a Ground<'a>,
-    /// Values of the parameters that stay.
+    /// Values of the parameters that no knob changes.
     pub values: Values,
     /// The knobs.
     pub moves: Vec<Move>,
-    /// How many there are.
+    /// Number of knobs.
     pub knobs: usize,
-    /// Means of readings, by their places: further results after the readings.
+    /// Means of readings, given by the positions of these: further results after the readings.
     pub means: Vec<Vec<usize>>,
     /// Uncertainty of the parameters, the same for every design.
     pub chance: Chance,
@@ -46,7 +46,7 @@ impl Axle<'_> {
         values
     }
 
-    /// The knob that changes each parameter.
+    /// The direction of the parameters along which a knob moves by `size`.
     fn direction(&self, knob: usize, size: f64) -> Vec<f64> {
         let mut direction = vec![0.0; self.values.as_slice().len()];
         for own in self.moves.iter().filter(|own| own.knob == knob) {
@@ -103,7 +103,7 @@ impl Designs for Axle<'_> {
     }
 
     fn slopes(&self, design: &[f64]) -> Option<Vec<Vec<f64>>> {
-        // Directions as long as the parameters are what differences along them are made for.
+        // Difference quotients along directions are accurate if these are as large as the parameters.
         let sizes: Vec<f64> = design
             .iter()
             .map(|value| if *value == 0.0 { 1.0 } else { *value })

@@ -1,4 +1,4 @@
-//! The surroundings of a box: designs in the plane of two knobs, good and bad.
+//! Slices around a box: good and bad designs in the plane of two knobs.
 
 use super::space::Space;
 use super::task::{Task, is_met};
@@ -7,7 +7,7 @@ use crate::random::SplitMix;
 /// Designs over the whole ranges of two knobs, with all others anywhere in the box.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cut {
-    /// Places of the knobs.
+    /// Positions of the knobs.
     pub knobs: [usize; 2],
     /// The designs.
     pub dots: Vec<Dot>,
@@ -18,11 +18,11 @@ pub struct Cut {
 pub struct Dot {
     /// Values of both knobs.
     pub at: [f64; 2],
-    /// The limit or coupling that is exceeded most, by its place; none where all is met.
+    /// Position of the limit or coupling that is exceeded most; `None` if all are met.
     pub broken: Option<usize>,
 }
 
-/// Draws `count` designs, with results as they may turn out.
+/// Draws `count` designs with random results.
 pub fn cut(task: &Task<'_>, space: &Space, knobs: [usize; 2], count: usize, seed: u64) -> Cut {
     let points = SplitMix::new(seed).hypercube(count, task.knobs.len());
     let task = task.without_margins();

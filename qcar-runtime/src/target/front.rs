@@ -13,7 +13,7 @@ pub struct Settings {
     pub population: usize,
     /// Generations.
     pub generations: usize,
-    /// Of the random numbers.
+    /// Seed of the random numbers.
     pub seed: u64,
 }
 
@@ -41,9 +41,9 @@ pub struct Point {
 /// A front, in the order of its first result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Front {
-    /// `None` if no design meets all limits.
+    /// The points; empty if no design meets all limits.
     pub points: Vec<Point>,
-    /// Designs that were evaluated.
+    /// Number of evaluated designs.
     pub evaluated: usize,
 }
 
@@ -63,8 +63,8 @@ struct Member {
     room: f64,
 }
 
-/// The front of results by their places, of which each is better the lower, or the higher for [`Sense::AtLeast`]. Looked for from
-/// `known` designs on and from all over the ranges.
+/// The front of the results at the given positions. Lower results are better, or higher ones for [`Sense::AtLeast`].
+/// The search starts from `known` designs and from random ones over the whole ranges.
 pub fn front(
     task: &Task<'_>,
     aims: &[(usize, Sense)],
@@ -149,7 +149,7 @@ fn dominates(a: &Member, b: &Member) -> bool {
     pairs().all(|(a, b)| a <= b) && pairs().any(|(a, b)| a < b)
 }
 
-/// Ranks members by how many fronts dominate them, and orders them by that and by the room that they have on their front.
+/// Ranks members by the number of fronts that dominate them, and sorts them by rank, then by crowding distance.
 fn sort(members: &mut [Member]) {
     let mut left: Vec<usize> = (0..members.len()).collect();
     let mut rank = 0;
@@ -163,7 +163,7 @@ fn sort(members: &mut [Member]) {
     members.sort_by(|a, b| a.rank.cmp(&b.rank).then(b.room.total_cmp(&a.room)));
 }
 
-/// The crowding distance: how far the neighbours on a front are from each other, over all aims.
+/// The crowding distance: the distance between the neighbours on a front, over all objectives.
 fn give_room(members: &mut [Member], front: &[usize]) {
     front.iter().for_each(|&at| members[at].room = 0.0);
     for aim in 0..front.first().map_or(0, |&at| members[at].aims.len()) {

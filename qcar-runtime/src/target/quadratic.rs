@@ -1,27 +1,28 @@
-//! Least squares under linear inequalities that may be broken at a price, in a box.
+//! Least squares in a box with linear inequalities, whose violation has a price.
 //!
-//! `min Σ w (d - e)² + Σ price max(0, g + A d)` over `low ≤ d ≤ high`. For given multipliers the best `d` stands for each knob
-//! alone; the multipliers climb the dual, one after the other (Hildreth, Naval Res. Logist. Quart. 4, 1957).
+//! `min Σ w (d - e)² + Σ price max(0, g + A d)` over `low ≤ d ≤ high`. For given multipliers, the best `d` follows for
+//! each knob separately; the multipliers maximise the dual, one after another (Hildreth, Naval Res. Logist. Quart. 4,
+//! 1957).
 
 /// The programme.
 pub(super) struct Quadratic<'a> {
     /// Weights, above zero.
     pub weights: &'a [f64],
-    /// Where each knob would go.
+    /// Unconstrained optimum of each knob.
     pub wanted: &'a [f64],
     pub low: &'a [f64],
     pub high: &'a [f64],
-    /// By how much each inequality is broken at zero.
+    /// Violation of each inequality at zero.
     pub excess: &'a [f64],
-    /// For each inequality its derivative by each knob.
+    /// For each inequality, its derivative by each knob.
     pub slopes: &'a [Vec<f64>],
-    /// The most that the multiplier of each inequality may become.
+    /// Upper bound of the multiplier of each inequality.
     pub prices: &'a [f64],
 }
 
 const SWEEPS: usize = 400;
 const HALVINGS: usize = 50;
-/// Multipliers that move by less than this part of the highest price are settled.
+/// Multipliers that change by less than this fraction of the highest price have converged.
 const SETTLED: f64 = 1e-9;
 
 impl Quadratic<'_> {
@@ -48,7 +49,7 @@ impl Quadratic<'_> {
         (self.step(&pull), multipliers)
     }
 
-    /// Where all knobs go under the pull of the inequalities.
+    /// The best step under the pull of the inequalities.
     fn step(&self, pull: &[f64]) -> Vec<f64> {
         (0..pull.len()).map(|knob| self.knob(knob, pull[knob])).collect()
     }
@@ -58,7 +59,7 @@ impl Quadratic<'_> {
         free.clamp(self.low[knob], self.high[knob])
     }
 
-    /// The multiplier of a row that is best beside all others: what is left of its excess falls as it grows.
+    /// The best multiplier of a row with all others fixed; the remaining excess decreases as it grows.
     fn best(&self, row: usize, now: f64, pull: &[f64]) -> f64 {
         let slopes = &self.slopes[row];
         let left = |multiplier: f64| {

@@ -1,4 +1,4 @@
-//! The design of least cost that meets all limits, or the one that breaks them least.
+//! The design of least cost that meets all limits, or the one with the smallest violation.
 //!
 //! Sequential quadratic programming under an exact penalty in a trust region (Fletcher, "Practical Methods of Optimization",
 //! 2nd ed., section 14.4), from today's design and from the most promising of a Latin hypercube.
@@ -17,16 +17,16 @@ pub struct Found {
     pub design: Vec<f64>,
     /// Its results.
     pub values: Vec<f64>,
-    /// Its cost, with the penalties of missed wishes.
+    /// Its cost, including that of missed wishes.
     pub cost: f64,
-    /// By how much each limit and coupling is exceeded, over its size; at most zero where it is met.
+    /// Violation of each limit and coupling, relative to its size; at most zero if it is met.
     pub excess: Vec<f64>,
-    /// By how much the cost would fall if a limit were looser by its own size. Where not all is met, of those that stand in
-    /// the way the share of each, from 0 to 1.
+    /// Decrease of the cost if a limit were looser by its own size. If not all limits are met: the share of each limit
+    /// in the conflict, from 0 to 1.
     pub multipliers: Vec<f64>,
-    /// Whether all is met.
+    /// True if all limits and couplings are met.
     pub met: bool,
-    /// Designs that were evaluated, and how often derivatives were.
+    /// Numbers of evaluations of designs and of derivatives.
     pub effort: [usize; 2],
 }
 
@@ -34,13 +34,14 @@ pub struct Found {
 const LOOKS: usize = 120;
 const STARTS: usize = 3;
 const ITERATIONS: usize = 25;
-/// First and smallest size of a step, in parts of the ranges; and the smallest as long as a limit is broken.
+/// First and smallest size of a step relative to the ranges, and smallest size as long as a limit is violated.
 const FIRST: f64 = 0.3;
 const SMALLEST: f64 = 1e-4;
 const FINEST: f64 = 1e-8;
 /// Share of the predicted gain that a step must reach to be accepted.
 const GAIN: f64 = 0.05;
-/// So much inside its limit a result is aimed at: a search that ends at a limit would be beyond it as often as not.
+/// Relative distance inside a limit at which the search aims: a search that aims at the limit itself would often end
+/// beyond it.
 const MARGIN: f64 = 1e-4;
 /// Least cost of a knob, which makes every step unique.
 const LEAST_COST: f64 = 1e-4;
@@ -63,12 +64,12 @@ pub fn search(task: &Task<'_>, seed: u64, on_progress: OnProgress<'_>) -> Option
     Some(found(task, best))
 }
 
-/// A design on its way.
+/// State of a search.
 #[derive(Clone)]
 struct State {
     places: Vec<f64>,
     values: Vec<f64>,
-    /// With that of missed wishes.
+    /// Cost, including that of missed wishes.
     cost: f64,
     excess: Vec<f64>,
     /// Sum of the violations of all constraints.
@@ -115,7 +116,7 @@ impl State {
     }
 }
 
-/// The price of breaking a limit by its own size: more than any move could cost.
+/// The price of violating a limit by its own size: more than any move could cost.
 fn price(task: &Task<'_>) -> f64 {
     10.0 * (1.0 + task.knobs.iter().map(|knob| knob.cost).sum::<f64>())
 }
@@ -192,7 +193,7 @@ fn descend(task: &Task<'_>, mut state: State, free: &[bool]) -> State {
     state
 }
 
-/// For each limit and coupling its derivative by the place of each knob.
+/// For each limit and coupling, its derivative by the position of each knob.
 fn slopes_at(task: &Task<'_>, places: &[f64]) -> Option<Vec<Vec<f64>>> {
     let by_knob = task.designs.slopes(&task.design(places))?;
     let limits = task.limits.iter().map(|limit| {
@@ -242,7 +243,7 @@ fn solve(task: &Task<'_>, state: &State, slopes: &[Vec<f64>], radius: f64, free:
     quadratic.solve()
 }
 
-/// The merit after a step, if everything were linear.
+/// Predicted merit after a step, from the linearisation.
 fn expected(task: &Task<'_>, state: &State, slopes: &[Vec<f64>], step: &[f64]) -> f64 {
     let places: Vec<f64> = state.places.iter().zip(step).map(|(place, d)| place + d).collect();
     let after = state.excess.iter().zip(slopes).map(|(excess, slopes)| {
@@ -253,7 +254,7 @@ fn expected(task: &Task<'_>, state: &State, slopes: &[Vec<f64>], step: &[f64]) -
     task.cost(&task.design(&places)) + task.missed(&after) + state.price * task.broken(&after, &task.margins(MARGIN))
 }
 
-/// Moves to values that are available: rounds each knob, tries its neighbours, and optimises the other knobs again.
+/// Moves to available values: rounds each knob, tries its neighbours, and optimises the other knobs again.
 fn had(task: &Task<'_>, from: State) -> State {
     let rounded = |places: &[f64]| task.places(&task.had(&task.design(places)));
     let follow = |state: State| {

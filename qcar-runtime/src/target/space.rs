@@ -1,12 +1,12 @@
 //! The solution space: the largest box of knobs' intervals in which all limits hold with a stated probability.
 //!
-//! Zimmermann and von Hoessle, "Computing solution spaces for robust design", Int. J. Numer. Meth. Engng 94 (2013) 290–307: a box
-//! grows to all sides, designs are drawn in it, and sides are cut off that hold bad ones while as few good ones as possible go
-//! with them; at the end it grows as long as enough designs in it are good. How probable a good design is in the
-//! box is then judged by designs that had no part in finding it.
+//! Zimmermann and von Hoessle, "Computing solution spaces for robust design", Int. J. Numer. Meth. Engng 94 (2013)
+//! 290–307. A box grows to all sides, designs are drawn in it, and parts with bad designs are cut off so that as few
+//! good ones as possible are lost. At the end it grows as long as enough designs in it are good. The probability of a
+//! good design in the box is then estimated from designs that were not used to find it.
 //!
-//! Where results are not certain, the box is found with the margins of the limits, in which all is certain, and judged by results as they
-//! may turn out: then the probability is that over designs and results together.
+//! If results are uncertain, the box is searched with certain results and the margins of the limits, and judged by
+//! random results: the probability is then that over designs and results together.
 
 use super::task::{Task, is_met};
 use crate::progress::OnProgress;
@@ -15,13 +15,13 @@ use crate::random::SplitMix;
 /// The requirements on a box, and the effort of the search for it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Of a good design, for those that are spread evenly over the box.
+    /// Probability of a good design, for a uniform distribution over the box.
     pub probability: f64,
     /// Designs drawn at a time.
     pub samples: usize,
     /// Rounds of growth.
     pub rounds: usize,
-    /// Of the random numbers.
+    /// Seed of the random numbers.
     pub seed: u64,
 }
 
@@ -39,21 +39,21 @@ impl Default for Settings {
 /// A box of intervals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Space {
-    /// Of each knob.
+    /// The interval of each knob.
     pub intervals: Vec<[f64; 2]>,
-    /// The share of good designs in it, by those that judge it.
+    /// Share of good designs among those that judge it.
     pub probability: f64,
-    /// With 95 % confidence it is no lower than this.
+    /// Lower bound of the probability with 95 % confidence.
     pub at_least: f64,
-    /// The share of designs that meet each limit and, after them, each coupling.
+    /// Share of designs that meet each limit, then each coupling.
     pub each: Vec<f64>,
-    /// The part that it has of all designs in range.
+    /// Its volume, relative to that of the whole ranges.
     pub volume: f64,
-    /// Designs that were evaluated.
+    /// Number of evaluated designs.
     pub evaluated: usize,
 }
 
-/// Each side grows by this part of the range in the first round; in the last by a tenth of it.
+/// Growth of each side in the first round, relative to the range; a tenth of it in the last round.
 const GROWTH: f64 = 0.08;
 /// Good designs from which cuts are tried.
 const ANCHORS: usize = 16;
@@ -78,19 +78,19 @@ const CONFIRMATIONS: usize = 16;
 /// Largest number of larger boxes that are judged after that.
 const FURTHER_ONES: usize = 4;
 
-/// A box in places of the knobs.
+/// A box in positions of the knobs, 0 to 1.
 type Sides = Vec<[f64; 2]>;
 
 /// A drawn design.
 struct Drawn {
     places: Vec<f64>,
-    /// Of each limit and coupling; `None` where there are no results.
+    /// Violation of each limit and coupling; `None` without results.
     excess: Option<Vec<f64>>,
     /// True if all constraints hold.
     good: bool,
 }
 
-/// The largest box about a good design that was found; none where `known` are not good and no other was met.
+/// The largest box around a good design that was found; `None` if no good design is known or found.
 pub fn space(task: &Task<'_>, known: &[Vec<f64>], settings: Settings, on_progress: OnProgress<'_>) -> Option<Space> {
     let mut random = SplitMix::new(settings.seed);
     let real = task.without_margins();
@@ -108,7 +108,8 @@ pub fn space(task: &Task<'_>, known: &[Vec<f64>], settings: Settings, on_progres
         evaluated += drawn.len();
         sides = trimmed(&sides, &drawn).unwrap_or(before);
     }
-    // So many good ones in a row show the probability at 95 % confidence; twice that leaves room for bad ones.
+    // The smallest number of good designs without a bad one that shows the probability at 95 % confidence; a multiple
+    // of it allows for bad ones.
     let judges = settings
         .samples
         .max((2.0 * 3.0 / (1.0 - settings.probability).max(1e-4)).ceil() as usize);
@@ -132,7 +133,7 @@ pub fn space(task: &Task<'_>, known: &[Vec<f64>], settings: Settings, on_progres
                 let inside: Vec<Drawn> = drawn.into_iter().filter(|own| holds(&sides, &own.places)).collect();
                 sides = trimmed(&sides, &inside).unwrap_or_else(|| shrunk(&sides));
             }
-            // A bad result says little of its place.
+            // A random bad result says little about its position.
             None => sides = shrunk(&shrunk(&sides)),
         }
     }
@@ -146,10 +147,10 @@ pub fn space(task: &Task<'_>, known: &[Vec<f64>], settings: Settings, on_progres
     ))
 }
 
-/// A box as designs judge it that had no part in finding it. Where they find too many bad ones, it shrinks until they do not; then it
-/// grows step by step as long as they do not. Since growth ends at the first box that does not confirm, one that holds less than the
-/// probability is the result no more often than the level of significance says (Maurer, Hothorn and Lehmacher, "Multiple comparisons in
-/// drug clinical trials and preclinical assays: a-priori ordered hypotheses", 1995).
+/// Judges a box by new designs. If too many are bad, the box shrinks until enough are good; then it grows step by step
+/// as long as enough are good. Since growth ends at the first box that is not confirmed, a box below the required
+/// probability is returned no more often than the level of significance (Maurer, Hothorn and Lehmacher, "Multiple
+/// comparisons in drug clinical trials and preclinical assays: a-priori ordered hypotheses", 1995).
 fn confirmed(
     task: &Task<'_>,
     mut sides: Sides,
@@ -185,14 +186,14 @@ fn confirmed(
     best
 }
 
-/// A share of good designs at which a box probably confirms: one standard deviation above what is needed.
+/// Share of good designs at which a box will probably be confirmed: one standard deviation above the required share.
 fn probably_enough(confirming: usize, probability: f64) -> f64 {
     let scatter = (probability * (1.0 - probability) / confirming as f64).sqrt();
     (needed(confirming, probability) + scatter).min(1.0)
 }
 
-/// The last step from a box to one around it, in which `drawn` lie, at which enough of the designs inside are good; none where not even in
-/// the box itself.
+/// The last step from a box to a larger one, which contains `drawn`, at which enough of the designs inside are good;
+/// `None` if there are not enough in the box itself.
 fn largest_within(sides: &Sides, around: &Sides, drawn: &[Drawn], enough: f64) -> Option<usize> {
     (0..=STEPS).rev().find(|&step| {
         let sides = between(sides, around, step);
@@ -231,7 +232,7 @@ fn grow(sides: &mut Sides, by: f64) {
     }
 }
 
-/// Each interval longer at both ends, by a part of its length.
+/// Each interval extended at both ends by a fraction of its length.
 fn grown(sides: &Sides, part: f64) -> Sides {
     let grow = |[low, high]: &[f64; 2]| {
         let by = part * (high - low);
@@ -244,7 +245,7 @@ fn shrunk(sides: &Sides) -> Sides {
     grown(sides, -SHRINKAGE)
 }
 
-/// Designs all over a box.
+/// Random designs in a box.
 fn inside(sides: &Sides, count: usize, random: &mut SplitMix) -> Vec<Vec<f64>> {
     let mut points = random.hypercube(count, sides.len());
     for (u, [low, high]) in points.iter_mut().flat_map(|point| point.iter_mut().zip(sides)) {
@@ -253,7 +254,7 @@ fn inside(sides: &Sides, count: usize, random: &mut SplitMix) -> Vec<Vec<f64>> {
     points
 }
 
-/// Designs with the results that they should have.
+/// Random designs with their certain results.
 fn draw(task: &Task<'_>, sides: &Sides, count: usize, random: &mut SplitMix) -> Vec<Drawn> {
     let points = inside(sides, count, random);
     let designs: Vec<Vec<f64>> = points.iter().map(|places| task.design(places)).collect();
@@ -263,7 +264,7 @@ fn draw(task: &Task<'_>, sides: &Sides, count: usize, random: &mut SplitMix) -> 
         .collect()
 }
 
-/// Designs with results as they may turn out.
+/// Random designs with random results.
 fn turned_out(task: &Task<'_>, sides: &Sides, count: usize, random: &mut SplitMix) -> Vec<Drawn> {
     if task.designs.is_certain() {
         return draw(task, sides, count, random);
@@ -291,8 +292,8 @@ fn judged_at(task: &Task<'_>, places: Vec<f64>, values: Option<Vec<f64>>) -> Dra
     Drawn { places, excess, good }
 }
 
-/// The box without the bad designs: of those about some good ones the one with most good designs and most volume. None where
-/// all are bad.
+/// The box without the bad designs: of boxes around several good ones, the one with the most good designs and the
+/// largest volume. `None` if all are bad.
 fn trimmed(sides: &Sides, drawn: &[Drawn]) -> Option<Sides> {
     let (good, bad): (Vec<&Drawn>, Vec<&Drawn>) = drawn.iter().partition(|own| own.good);
     if bad.is_empty() {
@@ -306,8 +307,8 @@ fn trimmed(sides: &Sides, drawn: &[Drawn]) -> Option<Sides> {
     boxes.max_by(|a, b| log_volume(a).total_cmp(&log_volume(b)))
 }
 
-/// The box about an anchor with each bad design cut off, along the knob that costs the fewest good designs, then the least
-/// volume.
+/// The box around an anchor with each bad design cut off, along the knob that loses the fewest good designs, then the
+/// least volume.
 fn without(sides: &Sides, anchor: &[f64], good: &[&Drawn], bad: &[&Drawn]) -> Sides {
     let mut sides = sides.clone();
     let mut order: Vec<&&Drawn> = bad.iter().collect();
@@ -334,7 +335,7 @@ fn without(sides: &Sides, anchor: &[f64], good: &[&Drawn], bad: &[&Drawn]) -> Si
     sides
 }
 
-/// Where a side is cut between a bad design and the good ones on the anchor's side of it: halfway to the nearest.
+/// Position of a cut between a bad design and the good ones on the anchor's side: halfway to the nearest.
 fn cut_at(good: &[&&Drawn], bad: f64, anchor: f64, knob: usize) -> f64 {
     let inside = good
         .iter()
@@ -382,7 +383,7 @@ fn judged(task: &Task<'_>, sides: &Sides, drawn: &[Drawn], evaluated: usize) -> 
     }
 }
 
-/// The share of good ones, of so many, that shows a probability with 95 % confidence.
+/// Share of good designs among `count` that shows a probability with 95 % confidence.
 fn needed(count: usize, probability: f64) -> f64 {
     let enough = (0..=count)
         .rev()
@@ -390,8 +391,8 @@ fn needed(count: usize, probability: f64) -> f64 {
     enough.last().unwrap_or(count) as f64 / count as f64
 }
 
-/// The probability at which so many or more good ones of all are found once in twenty times (Clopper and Pearson, Biometrika
-/// 26, 1934).
+/// Lower 95 % confidence bound of the probability for `good` of `count` designs: at this probability, as many or more
+/// are found once in twenty times (Clopper and Pearson, Biometrika 26, 1934).
 fn lower_bound(good: usize, count: usize) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..60 {
@@ -405,7 +406,7 @@ fn lower_bound(good: usize, count: usize) -> f64 {
     low
 }
 
-/// How probable at least `good` of `count` are.
+/// Probability of at least `good` of `count`, if each is good with probability `p`.
 fn tail(good: usize, count: usize, p: f64) -> f64 {
     let term = |k: usize| log_choose(count, k) + k as f64 * p.ln() + (count - k) as f64 * (-p).ln_1p();
     (good..=count).map(|k| term(k).exp()).sum::<f64>().min(1.0)
@@ -419,7 +420,7 @@ fn log_choose(n: usize, k: usize) -> f64 {
 mod tests {
     use super::{lower_bound, needed};
 
-    /// Where none is bad, p^n = 0.05.
+    /// If none is bad, p^n = 0.05.
     #[test]
     fn bounds_are_those_of_the_closed_form_where_all_are_good() {
         for count in [20, 59, 300] {

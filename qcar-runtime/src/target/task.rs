@@ -92,7 +92,7 @@ pub fn is_met(excess: f64) -> bool {
     excess <= TOLERANCE
 }
 
-/// All of it.
+/// A task: designs with their knobs, limits and couplings.
 #[derive(Clone)]
 pub struct Task<'a> {
     /// The designs.
@@ -116,12 +116,12 @@ impl Limit {
         self.sign() * slope / self.size()
     }
 
-    /// Whether both limits are of one result and must hold, one as the least and one as the most.
+    /// True if both limits must hold for one result, one as a lower and one as an upper limit.
     fn bounds_from_the_other_side(&self, other: &Limit) -> bool {
         self.result == other.result && self.sense != other.sense && self.wish.is_none() && other.wish.is_none()
     }
 
-    /// 1 where a larger result is worse, -1 where it is better.
+    /// 1 if a larger result is worse, -1 if it is better.
     pub fn sign(&self) -> f64 {
         match self.sense {
             Sense::AtMost => 1.0,
@@ -159,7 +159,7 @@ impl Knob {
 }
 
 impl Coupling {
-    /// By how much a design is beyond it, over the size of what is added up.
+    /// Violation by a design, relative to the size of the sum.
     pub fn excess(&self, design: &[f64], knobs: &[Knob]) -> f64 {
         (self.sum(design) - self.most) / self.size(knobs)
     }
@@ -170,7 +170,7 @@ impl Coupling {
         pairs.map(|(factor, value)| factor * value).sum()
     }
 
-    /// The derivative of that by a knob.
+    /// Derivative of the violation by a knob.
     pub fn slope(&self, knob: usize, knobs: &[Knob]) -> f64 {
         self.factors[knob] / self.size(knobs)
     }
@@ -186,7 +186,7 @@ impl Coupling {
 }
 
 impl Task<'_> {
-    /// The same with every limit where it is, for results as they turn out.
+    /// The same task without margins, for random results.
     #[must_use]
     pub fn without_margins(&self) -> Self {
         let mut own = self.clone();
@@ -194,7 +194,7 @@ impl Task<'_> {
         own
     }
 
-    /// A design by the places of its knobs.
+    /// The design at these positions of its knobs, 0 to 1.
     pub fn design(&self, places: &[f64]) -> Vec<f64> {
         self.knobs
             .iter()
@@ -203,7 +203,7 @@ impl Task<'_> {
             .collect()
     }
 
-    /// The places of a design's knobs in their ranges.
+    /// Positions of a design's knobs in their ranges, 0 to 1.
     pub fn places(&self, design: &[f64]) -> Vec<f64> {
         self.knobs
             .iter()
@@ -212,7 +212,7 @@ impl Task<'_> {
             .collect()
     }
 
-    /// The nearest design that can be had.
+    /// The nearest design of available values.
     pub fn had(&self, design: &[f64]) -> Vec<f64> {
         self.knobs
             .iter()
@@ -221,7 +221,7 @@ impl Task<'_> {
             .collect()
     }
 
-    /// Where the knobs are now, as far as their ranges allow.
+    /// The present design, moved into the ranges.
     pub fn today(&self) -> Vec<f64> {
         self.knobs
             .iter()
@@ -229,7 +229,7 @@ impl Task<'_> {
             .collect()
     }
 
-    /// What a design costs.
+    /// Cost of a design.
     pub fn cost(&self, design: &[f64]) -> f64 {
         let moves = self.knobs.iter().zip(design);
         moves
@@ -237,7 +237,7 @@ impl Task<'_> {
             .sum()
     }
 
-    /// By how much a design with these results is beyond each limit and, after them, each coupling.
+    /// Violation of each limit, then of each coupling, by a design with these results.
     pub fn excesses(&self, design: &[f64], values: &[f64]) -> Vec<f64> {
         let limits = self.limits.iter().map(|limit| limit.excess(values[limit.result]));
         limits
@@ -249,19 +249,20 @@ impl Task<'_> {
             .collect()
     }
 
-    /// True where all that must hold does.
+    /// True if all limits and couplings that must hold are met.
     pub fn holds(&self, excess: &[f64]) -> bool {
         self.hard(excess).all(|(_, excess)| is_met(excess))
     }
 
-    /// The sum by which all that must hold is exceeded, or nearer to it than its margin.
+    /// Sum of the violations of all limits and couplings that must hold, each with its margin.
     pub fn broken(&self, excess: &[f64], margins: &[f64]) -> f64 {
         self.hard(excess)
             .map(|(at, excess)| (excess + margins[at]).max(0.0))
             .sum()
     }
 
-    /// How far inside each limit and coupling a design is aimed at: `most`, or half of the room that an opposite limit leaves.
+    /// Distance inside each limit and coupling at which the search aims: `most`, or half of the room that an opposite
+    /// limit leaves.
     pub fn margins(&self, most: f64) -> Vec<f64> {
         let room = |limit: &Limit| {
             let opposite = self
@@ -275,13 +276,13 @@ impl Task<'_> {
         limits.chain(self.couplings.iter().map(|_| most)).collect()
     }
 
-    /// The excesses of what must hold, with their places.
+    /// Violations of the limits and couplings that must hold, with their positions.
     fn hard(&self, excess: &[f64]) -> impl Iterator<Item = (usize, f64)> {
         let all = excess.iter().copied().enumerate();
         all.filter(|(at, _)| self.wish(*at).is_none())
     }
 
-    /// What missed wishes cost.
+    /// Cost of missed wishes.
     pub fn missed(&self, excess: &[f64]) -> f64 {
         let wishes = excess
             .iter()
@@ -290,12 +291,12 @@ impl Task<'_> {
         wishes.sum()
     }
 
-    /// What it costs to miss a limit or coupling by its own size; `None` where it must hold.
+    /// Cost of missing a limit or coupling by its own size; `None` if it must hold.
     pub fn wish(&self, at: usize) -> Option<f64> {
         self.limits.get(at).and_then(|limit| limit.wish)
     }
 
-    /// True where all that must hold does; false, too, where a design has no results.
+    /// True if a design has results and meets all that must hold.
     pub fn is_good(&self, design: &[f64]) -> bool {
         let values = self.designs.values(design);
         values.is_some_and(|values| self.holds(&self.excesses(design, &values)))

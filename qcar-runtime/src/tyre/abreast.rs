@@ -1,5 +1,5 @@
-//! Contacts by area of several wheels, each on a straight piece of road of its own: loops over the lanes, with the bits that
-//! each wheel has alone.
+//! Area contacts of several wheels, each on its own straight piece of road: loops over the lanes, with the same bits as
+//! for each wheel alone.
 
 use super::area::with_rates;
 use super::patches::Line;
@@ -16,31 +16,31 @@ pub(crate) struct Pieces {
     along: [Lanes; 2],
     start: Lanes,
     end: Lanes,
-    /// Where each begins and ends along x, m.
+    /// Start and end of each piece along x, m.
     span: [Lanes; 2],
 }
 
-/// How the wheels move.
+/// Motion of the wheels.
 pub(crate) struct Wheels {
-    /// m.
+    /// Positions, m.
     pub position: [Lanes; 2],
-    /// m/s.
+    /// Velocities, m/s.
     pub velocity: [Lanes; 2],
 }
 
-/// What the pieces do to the wheels.
+/// Contacts of the wheels with the pieces.
 pub(crate) struct Touches {
     deflection: Lanes,
     direction: [Lanes; 2],
     /// Rate and direction.
     growth: [Lanes; 3],
     shrinkage: [Lanes; 3],
-    /// Whether it is that: of what is more than a short contact with the one piece it means nothing.
+    /// True if the contact of a lane is valid: short, and with its piece only.
     pub holds: [bool; LANES],
 }
 
 impl Pieces {
-    /// Under no wheel.
+    /// Pieces under no wheel.
     pub fn none() -> Self {
         Self {
             origin: [NOTHING; 2],
@@ -76,7 +76,7 @@ impl Pieces {
 }
 
 impl Wheels {
-    /// At rest.
+    /// Wheels at rest.
     pub fn none() -> Self {
         Self {
             position: [NOTHING; 2],
@@ -85,11 +85,11 @@ impl Wheels {
     }
 }
 
-/// What the loops over the lanes hand on to each other. A loop that does all at once is not made one of vectors.
+/// Intermediate results of the loops over the lanes. A single loop with all of the work would not be vectorised.
 struct Chords {
     from: [Lanes; 2],
     to: [Lanes; 2],
-    /// How far the centres are above the lines, m, and the directions up from these.
+    /// Heights of the centres above the lines, m, and normals of the lines, pointing up.
     distance: Lanes,
     up: [Lanes; 2],
     is_inside: [bool; LANES],
@@ -104,10 +104,10 @@ struct Turns {
 }
 
 impl Tyre {
-    /// What the pieces under several such tyres do to them.
+    /// The contacts of several such tyres with the pieces under them.
     #[inline(always)]
     pub(crate) fn touches(&self, pieces: &Pieces, wheels: &Wheels) -> Touches {
-        // Of any others each is looked at alone.
+        // All other contacts are computed one by one.
         if self.geometry != Geometry::Area || self.rates != Rates::AtStaticDeflection {
             return Touches::none();
         }
@@ -172,7 +172,7 @@ fn turns(radius: f64, chords: &Chords, wheels: &Wheels) -> Turns {
     turns
 }
 
-/// Of a lane.
+/// The entries of a lane.
 #[inline(always)]
 fn at(rows: &[Lanes; 2], lane: usize) -> [f64; 2] {
     [rows[0][lane], rows[1][lane]]
@@ -214,7 +214,7 @@ impl Touches {
         }
     }
 
-    /// As [`Touch::strains`]: for each of the three, stretches and rates.
+    /// As [`Touch::strains`]: stretches and rates for each of the three.
     #[inline(always)]
     pub fn strains(&self) -> [[Lanes; 2]; 3] {
         let mut strains = [[NOTHING; 2]; 3];
@@ -227,7 +227,7 @@ impl Touches {
         strains
     }
 
-    /// As [`Touch::force`], by what the laws say at the strains.
+    /// As [`Touch::force`], from the forces of the laws at the strains.
     #[inline(always)]
     pub fn pushing(&self, resisting: &[Lanes; 3]) -> Contacts {
         let mut contacts = Contacts::default();

@@ -10,7 +10,7 @@ use crate::road::{Circle, Moments, Road};
 /// The overlap of the circle with the ground and its change; moments are about the circle's centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Overlap {
-    /// m².
+    /// Area, m².
     pub area: f64,
     /// First moments `[∫ x dA, ∫ z dA]`, m³.
     pub moment: [f64; 2],
@@ -18,11 +18,11 @@ pub struct Overlap {
     pub growth: Sweep,
     /// Where the circle leaves the ground.
     pub shrinkage: Sweep,
-    /// How many separate patches there are.
+    /// Number of separate patches.
     pub patches: usize,
 }
 
-/// The contact by area.
+/// The contact of an area tyre.
 #[inline(always)]
 pub(super) fn touch(tyre: &Tyre, road: &Road, wheel: &Wheel, piece: &Cell<usize>) -> Option<Touch> {
     let circle = Circle {
@@ -49,7 +49,7 @@ pub(super) fn overlap(radius: f64, road: &Road, wheel: &Wheel) -> Overlap {
     gather(road, &circle, wheel.velocity, (first, last))
 }
 
-/// On one straight piece of road the deflection is seen without a detour over the area.
+/// The contact on one straight piece of road, where the deflection follows directly, without the area.
 #[inline(always)]
 fn straight(tyre: &Tyre, wheel: &Wheel, line: &Line) -> Option<Touch> {
     let (chord, is_inside) = line.chord();
@@ -118,7 +118,8 @@ fn gather(road: &Road, circle: &Circle, velocity: [f64; 2], range: (usize, usize
     }
 }
 
-/// What [`Moments`] are of the ground, of the rim below it: `x = r sin φ`, `z = -r cos φ`, over an arc of `angle`.
+/// The integrals of [`Moments`] over the rim below the ground instead of the ground: `x = r sin φ`, `z = -r cos φ`,
+/// over an arc of `angle`.
 #[inline]
 fn rim_integrals(radius: f64, patch: &Patch, angle: f64) -> Moments {
     let ([x0, z0], [x1, z1]) = (patch.from, patch.to);

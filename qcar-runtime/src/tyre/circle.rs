@@ -15,7 +15,7 @@ pub(super) fn angle(sine: f64, cosine: f64) -> f64 {
     angles([sine], [cosine])[0]
 }
 
-/// Several angles at once: the processor computes them side by side.
+/// Several angles, which the processor computes in parallel.
 #[inline]
 pub(super) fn angles<const N: usize>(sine: [f64; N], cosine: [f64; N]) -> [f64; N] {
     match short_arcs(cosine) {
@@ -24,7 +24,8 @@ pub(super) fn angles<const N: usize>(sine: [f64; N], cosine: [f64; N]) -> [f64; 
     }
 }
 
-/// The unit vectors along `[θ - sin θ cos θ, sin² θ]`, and whether all arcs are short; else they mean nothing.
+/// The unit vectors along `[θ - sin θ cos θ, sin² θ]`, and true if all arcs are short; otherwise the vectors are not
+/// valid.
 #[inline(always)]
 pub(super) fn swept_directions<const N: usize>(sine: [f64; N], cosine: [f64; N]) -> ([[f64; 2]; N], bool) {
     let y = cosine.map(half_squared_sine);
@@ -38,7 +39,7 @@ fn half_squared_sine(cosine: f64) -> f64 {
     0.5 * (1.0 - cosine)
 }
 
-/// The same of several, where it is small for all.
+/// The same for several arcs; `None` if one of them is not short.
 #[inline]
 fn short_arcs<const N: usize>(cosine: [f64; N]) -> Option<[f64; N]> {
     let y = cosine.map(half_squared_sine);

@@ -28,7 +28,7 @@ impl Touch {
     pub(crate) fn pushing(&self, [at_rest, growing, shrinking]: [f64; 3]) -> Contact {
         let spring = (-at_rest).max(0.0);
         let growth = (at_rest - growing).max(0.0);
-        // As `clamp` has it, which would ask at every turn of a loop whether the ends are in order.
+        // As `clamp`, which would check the order of its bounds in every pass of a loop.
         let less = shrinking - at_rest;
         let less = if less < 0.0 { 0.0 } else { less };
         let shrinkage = if less > spring { spring } else { less };

@@ -20,7 +20,7 @@ pub(super) struct Line {
     along: [f64; 2],
     start: f64,
     end: f64,
-    /// Place on the line of the point nearest to the centre.
+    /// Position on the line of the point nearest to the centre.
     foot: f64,
     /// Height of the centre above the line; negative below it.
     pub distance: f64,
@@ -146,7 +146,7 @@ impl Line {
         })
     }
 
-    /// The part of the line inside the circle, and whether there is one that is inside the piece.
+    /// The part of the line inside the circle, and true if a part of it is inside the piece.
     #[inline(always)]
     pub fn chord(&self) -> (Clip, bool) {
         let half = self.half_chord_squared.sqrt();
@@ -175,7 +175,7 @@ impl Line {
         (self.along, [-self.along[1], self.along[0]])
     }
 
-    /// How far a place is ahead of the foot.
+    /// Distance of a position ahead of the foot.
     pub fn ahead(&self, place: f64) -> f64 {
         place - self.foot
     }

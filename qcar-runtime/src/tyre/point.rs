@@ -1,11 +1,11 @@
-//! The road by the height under the wheel's centre alone (thesis sections 2.4.3.1 and 3.3.2.1).
+//! Point contact: only the height under the wheel's centre acts (thesis sections 2.4.3.1 and 3.3.2.1).
 
 use super::{Change, Touch, Tyre, Wheel};
 use crate::road::Road;
 
 const UP: [f64; 2] = [0.0, 1.0];
 
-/// The contact by one point. A vertical step moves it at once and has no rate.
+/// The contact of a point tyre. At a vertical step the deflection jumps, without a rate.
 pub(super) fn touch(tyre: &Tyre, road: &Road, wheel: &Wheel) -> Option<Touch> {
     let [x, z] = wheel.position;
     let deflection = tyre.radius - (z - road.height(x));

@@ -1,16 +1,16 @@
 //! Springs and dampers along the radii of the tyre (thesis section 2.4.3.2).
 //!
 //! A spring at angle φ from straight down is compressed by δ = r - ρ(φ), with the distance ρ of the first ground along
-//! its radius; a straight piece of ground at distance p, with its normal at angle β, has ρ = p/cos(φ - β).
-//! The springs together push with `∫ δ n dφ` against the normal `n`, which has a closed form on each piece.
-//! The dampers work on the radial velocity of the wheel's centre, as in the thesis's flat-road formula.
+//! its radius; a straight piece of ground at distance p, with its normal at angle β, has ρ = p/cos(φ - β). The springs
+//! together push with `∫ δ n dφ` against the normal `n`, which has a closed form on each piece. The dampers act on the
+//! radial velocity of the wheel's centre, as in the thesis's flat-road formula.
 
 use super::patches::{Line, candidates};
 use super::sweep::Sweeps;
 use super::{Change, Touch, Tyre, Wheel, against, combined, norm};
 use crate::road::{Circle, Road};
 
-/// The contact by radii.
+/// The contact of a radial tyre.
 pub(super) fn touch(tyre: &Tyre, road: &Road, wheel: &Wheel) -> Option<Touch> {
     let circle = Circle {
         centre: wheel.position,
@@ -40,7 +40,8 @@ pub(super) fn touch(tyre: &Tyre, road: &Road, wheel: &Wheel) -> Option<Touch> {
     })
 }
 
-/// `∫ cos² φ dφ` over the contact of the unit circle with a flat road: what the dampers feel of a vertical velocity.
+/// `∫ cos² φ dφ` over the contact of the unit circle with a flat road: the factor of the dampers for a vertical
+/// velocity.
 pub(super) fn flat_damping(deflection: f64) -> f64 {
     let angle = (1.0 - deflection).clamp(-1.0, 1.0).acos();
     angle + angle.sin() * angle.cos()

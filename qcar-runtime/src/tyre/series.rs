@@ -1,7 +1,6 @@
 //! Power series of the circle's closed forms; they keep their digits for the shortest arcs.
 //!
-//! An arc is measured by `y = sin² θ/2 = (1 - cos θ)/2`: with it come neither roots nor quotients, for which a
-//! processor would have to wait.
+//! The variable of an arc is `y = sin² θ/2 = (1 - cos θ)/2`, which needs neither roots nor quotients; these are slow.
 
 /// Terms of each series; the first one left out is below 1e-13 where they are used.
 const TERMS: usize = 12;
@@ -13,17 +12,17 @@ pub(super) type Series = [f64; TERMS];
 pub(super) const ANGLE: Series = angle();
 /// `u` with the deflection `q u(q)` that has the area of the parabolic deflection `q`.
 pub(super) const DEFLECTION: Series = deflection();
-/// Of the unit vector along `[θ - sin θ cos θ, sin² θ]` the first entry over `sin θ`, by y.
+/// First entry of the unit vector along `[θ - sin θ cos θ, sin² θ]`, over `sin θ`, by y.
 pub(super) const FORWARD: Series = product(&TILT, &DOWN);
 /// Its second entry, by y.
 pub(super) const DOWN: Series = inverse_root(&one_and_squared_tilt());
 
-/// What the two entries of that vector have to each other, over `sin θ`.
+/// Ratio of the two entries of that vector, over `sin θ`.
 const TILT: Series = tilt();
 
 /// The value of a series at `x`.
 ///
-/// Four coefficients at a time, so that the processor works on several while the sum waits for the last.
+/// Uses four independent sums, which the processor computes in parallel.
 #[inline(always)]
 pub(super) fn value(series: &Series, x: f64) -> f64 {
     let (x2, x4) = (x * x, x * x * x * x);

@@ -13,7 +13,8 @@ use super::{against, combined, dot};
 pub struct Sweep {
     /// `∫ |v·n| ds`: the area swept per second, m²/s.
     pub flux: f64,
-    /// `∫ n |v·n| ds`, m²/s: times the radius, the first moment of what is swept, about the circle's centre.
+    /// `∫ n |v·n| ds`, m²/s; times the radius, it is the first moment of the swept area per second about the circle's
+    /// centre.
     pub moment: [f64; 2],
 }
 
@@ -26,9 +27,9 @@ pub(super) struct Sweeps {
     speed: f64,
     /// The direction of the circle there; its normal out of the circle points down.
     along: [f64; 2],
-    /// With the moment along the circle and across it at the turning point.
+    /// The part ahead of the turning point, with the moment along the circle and across it there.
     ahead: Sweep,
-    /// As `ahead`, with the sign of `sin θ`: negative.
+    /// The part behind, with the sign of `sin θ`: negative.
     behind: Sweep,
 }
 
@@ -37,7 +38,7 @@ pub(super) struct Sweeps {
 pub(super) struct Part {
     /// The area swept per second, m²/s.
     pub flux: f64,
-    /// The unit vector from the centroid of what is swept to the circle's centre.
+    /// The unit vector from the centroid of the swept area to the circle's centre.
     pub direction: [f64; 2],
 }
 
@@ -59,7 +60,7 @@ impl Sweeps {
         Self::turning(radius, speed, [direction(0, 1.0), direction(1, 0.0)])
     }
 
-    /// Of a circle that moves along itself at its turning point with a speed in a direction.
+    /// The sweeps of a circle that moves along itself at its turning point, with a speed in a direction.
     #[inline(always)]
     pub fn turning(radius: f64, speed: f64, along: [f64; 2]) -> Self {
         Self {
@@ -78,7 +79,7 @@ impl Sweeps {
         (self.speed, self.along)
     }
 
-    /// Adds the lower arc between two points of the circle, from the rear to the front, and says which angle it spans.
+    /// Adds the lower arc between two points of the circle, from the rear to the front. Returns its angle.
     #[inline]
     pub fn add(&mut self, from: [f64; 2], to: [f64; 2]) -> f64 {
         let [from, to] = self.rims([from, to]);
@@ -96,8 +97,8 @@ impl Sweeps {
         to.angle - from.angle
     }
 
-    /// Growth and shrinkage of a single arc, and whether it is short and goes across the turning point; of any other they
-    /// mean nothing.
+    /// Growth and shrinkage of a single arc, and true if it is short and contains the turning point; otherwise they are
+    /// not valid.
     #[inline(always)]
     pub fn across(&self, from: [f64; 2], to: [f64; 2]) -> ([Part; 2], bool) {
         self.between(self.places([from, to]))
@@ -130,7 +131,8 @@ impl Sweeps {
         self.growth_first(swept(&self.ahead, scale), swept(&self.behind, -scale))
     }
 
-    /// What is ahead of the turning point grows where the wheel rolls to the front.
+    /// Orders the parts as growth and shrinkage: the part ahead of the turning point grows if the wheel rolls to the
+    /// front.
     #[inline(always)]
     fn growth_first<T>(&self, ahead: T, behind: T) -> [T; 2] {
         if self.speed > 0.0 {
@@ -179,7 +181,7 @@ impl Sweep {
 }
 
 impl Part {
-    /// This one, or another where that is wanted: number by number, so that lanes may choose apart.
+    /// This part, or `other` if `wanted`: number by number, so that each lane can choose.
     #[inline(always)]
     fn or(self, other: Self, wanted: bool) -> Self {
         let choose = |own: f64, other: f64| if wanted { other } else { own };

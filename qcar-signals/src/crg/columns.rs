@@ -1,4 +1,4 @@
-//! What the columns of the data are, and where across the road.
+//! The meaning of the data columns, and their positions across the road.
 
 use crate::error::{Fault, Place, Read};
 
@@ -15,9 +15,9 @@ pub(super) struct Column {
 pub(super) enum Kind {
     Slope,
     Banking,
-    /// A longitudinal section at its place, m.
+    /// A longitudinal section at its position, m.
     At(f64),
-    /// One that counts from the right, from 1 on.
+    /// A longitudinal section with its number, counted from the right from 1.
     Numbered,
     Other,
 }
@@ -53,7 +53,7 @@ pub(super) fn columns(header: &Header) -> Read<Vec<Column>> {
 }
 
 impl Column {
-    /// A section that is numbered is to have the number `next`.
+    /// Reads the definition of a column; a numbered section must have the number `next`.
     fn of(line: u64, text: &str, next: usize) -> Read<Column> {
         let mut parts = text.split(',').map(str::trim);
         let (name, unit) = (parts.next().unwrap_or_default(), parts.next().unwrap_or_default());
@@ -84,7 +84,7 @@ impl Column {
     }
 }
 
-/// The columns of longitudinal sections with their places across the road, m.
+/// The columns of longitudinal sections with their positions across the road, m.
 pub(super) fn places(header: &Header, columns: &[Column]) -> Read<Vec<(usize, f64)>> {
     let stated = columns.iter().enumerate().filter_map(|(at, column)| match column.kind {
         Kind::At(v) => Some((at, v)),
@@ -114,8 +114,8 @@ pub(super) fn places(header: &Header, columns: &[Column]) -> Read<Vec<(usize, f6
     }
 }
 
-/// Sections at one distance from each other, of which two of right, left and increment tell all; about the middle, where
-/// only the increment is known.
+/// Positions of equidistant sections, from two of the right end, the left end and the increment. If only the increment
+/// is known, they are symmetric about the reference line.
 fn even_places(header: &Header, count: usize) -> Read<Vec<f64>> {
     let of = |name: &str| header.road(&format!("LONG_SECTION_V_{name}"));
     let (right, left, step) = (of("RIGHT"), of("LEFT"), of("INCREMENT"));
@@ -128,7 +128,7 @@ fn even_places(header: &Header, count: usize) -> Read<Vec<f64>> {
         (None, None, Some(step)) => Some((-0.5 * gaps * step, step)),
         _ => None,
     };
-    // To the micrometre: the header is written in decimals.
+    // Rounded to the micrometre, since the header is written in decimals.
     let place = |right: f64, step: f64, at: usize| ((right + at as f64 * step) * 1e6).round() / 1e6 + 0.0;
     let places = found.map(|(right, step)| (0..count).map(|at| place(right, step, at)).collect::<Vec<f64>>());
     let places = places.filter(|places| places.iter().all(|v| v.is_finite()));

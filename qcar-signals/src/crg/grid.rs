@@ -1,29 +1,29 @@
-//! The data, in each of their formats.
+//! The data in each of the formats.
 
 use crate::bytes::{Number, Order, text};
 use crate::error::{Fault, Place, Read};
 
 use super::header::Header;
 
-/// Of a record of binary numbers, which pads the last row.
+/// Bytes of a record of binary numbers; the last record is padded.
 const BINARY_RECORD: usize = 80;
 
 /// The data by columns.
 pub(super) struct Grid {
-    /// Name of their format.
+    /// Name of the format.
     pub format: &'static str,
-    /// A number for each row; what is missing is none.
+    /// A number for each row; NaN if it is missing.
     pub columns: Vec<Vec<f64>>,
 }
 
 /// How numbers are stored.
 enum Stored {
     Binary(Number),
-    /// Characters of a number, and numbers of a line.
+    /// As text: characters of a number, and numbers in a line.
     Text(usize, usize),
 }
 
-/// By the line `#:`; binary numbers of single precision without one.
+/// The format by the line `#:`; without this line, binary numbers of single precision.
 fn format(header: &Header) -> Read<(&'static str, Stored)> {
     let Some((line, name)) = header.defined("#:").next() else {
         return Ok(("KRBI", Stored::Binary(Number::F32)));
@@ -42,7 +42,7 @@ fn format(header: &Header) -> Read<(&'static str, Stored)> {
 }
 
 impl Grid {
-    /// What stands after the header.
+    /// Reads the data after the header.
     pub fn read(data: &[u8], columns: usize, header: &Header) -> Read<Self> {
         let (format, stored) = format(header)?;
         let columns = match stored {
@@ -61,7 +61,7 @@ impl Grid {
     }
 }
 
-/// Numbers one after the other; the last record is filled up with numbers that count for nothing.
+/// Numbers one after another; the last record is padded with numbers that are ignored.
 fn binary(data: &[u8], number: Number, columns: usize, header: &Header) -> Read<Vec<Vec<f64>>> {
     let row = columns * number.size();
     let promised = header.promised()?.filter(|rows| rows * row as f64 <= data.len() as f64);
@@ -85,7 +85,7 @@ fn binary(data: &[u8], number: Number, columns: usize, header: &Header) -> Read<
     Ok(grid)
 }
 
-/// Lines of numbers of one width. Each row begins with a line of its own.
+/// Lines of numbers of equal width. Each row begins on a new line.
 fn written(data: &[u8], (width, of_line): (usize, usize), columns: usize, header: &Header) -> Read<Vec<Vec<f64>>> {
     let mut grid = vec![Vec::new(); columns];
     let mut at = 0;
@@ -119,7 +119,7 @@ fn written(data: &[u8], (width, of_line): (usize, usize), columns: usize, header
     }
 }
 
-/// A number, or what begins with a star and stands for none.
+/// A number; NaN for a text that begins with a star.
 fn value(field: &[u8], line: u64) -> Read<f64> {
     let own = text(field);
     let own = own.trim();

@@ -7,16 +7,16 @@ use crate::error::{Fault, Place, Read};
 
 /// Characters of a line of the header; characters after column 72 are a comment.
 pub(super) const RECORD: usize = 72;
-/// How far rounded numbers of the header may be from each other, as a share of an increment.
+/// Largest difference between rounded numbers of the header that count as equal, relative to an increment.
 pub(super) const ROUNDED: f64 = 1e-2;
 
-/// The keyword of a section, in capitals; empty where one ends.
+/// The keyword of a section, in capitals; empty at the end of a section.
 pub(super) fn section(line: &str) -> Option<String> {
     let word = line.strip_prefix('$')?.split([' ', '\t', '\r', '\n', '!']).next()?;
     Some(word.to_ascii_uppercase())
 }
 
-/// Parameters of the road, and what the data are.
+/// Parameters of the road, and the definition of the data.
 pub(super) struct Header {
     /// Values and lines of parameters, by section and name in capitals.
     parameters: HashMap<(String, String), (f64, u64)>,
@@ -24,9 +24,9 @@ pub(super) struct Header {
     definition: Vec<(u64, String)>,
     /// The line of each section.
     sections: HashMap<String, u64>,
-    /// Where the data begin.
+    /// The byte at which the data begin.
     pub end: usize,
-    /// The line before that.
+    /// The number of the last line before the data.
     pub lines: u64,
 }
 
@@ -118,7 +118,7 @@ impl Header {
         self.road(name).unwrap_or(0.0)
     }
 
-    /// Data of another file, and modifiers that change the profile.
+    /// Refuses references to another file, and modifiers that change the profile.
     pub fn refuse_what_is_elsewhere(&self) -> Read<()> {
         if let Some(&line) = self.sections.get("ROAD_CRG_FILE") {
             let remedy = "give that file";
@@ -146,13 +146,13 @@ impl Header {
         }
     }
 
-    /// Lines of the definition of the data that begin with this, with their numbers, without it.
+    /// Lines of the definition of the data that begin with `prefix`, with their numbers and without the prefix.
     pub fn defined<'a>(&'a self, prefix: &'a str) -> impl Iterator<Item = (u64, &'a str)> {
         let lines = self.definition.iter();
         lines.filter_map(move |(line, text)| Some((*line, after(text, prefix)?)))
     }
 
-    /// Rows that the length of the reference line promises.
+    /// Number of rows that follows from the length of the reference line; `None` if that is not stated.
     pub fn promised(&self) -> Read<Option<f64>> {
         let Distances { start, step } = self.distances()?;
         let Some((end, line)) = self.stated("REFERENCE_LINE_END_U") else {
@@ -169,7 +169,7 @@ impl Header {
         Ok(Some(((end - start) / step).round() + 1.0))
     }
 
-    /// What the parameters or the virtual channel `U:reference line u` say, or both of them.
+    /// Distances from the parameters or from the virtual channel `U:reference line u`.
     pub fn distances(&self) -> Read<Distances> {
         let (start, step) = ("REFERENCE_LINE_START_U", "REFERENCE_LINE_INCREMENT");
         let mut shown = self.defined("U:").filter(|(_, text)| is_distance(text));
@@ -200,7 +200,7 @@ impl Header {
     }
 }
 
-/// Whether this defines the distance along the reference line.
+/// True for a definition of the distance along the reference line.
 fn is_distance(text: &str) -> bool {
     let mut parts = text.split(',').map(str::trim);
     parts
@@ -209,7 +209,7 @@ fn is_distance(text: &str) -> bool {
         && parts.next() == Some("m")
 }
 
-/// The third and the fourth part of a definition, where they are numbers.
+/// The third and the fourth part of a definition; `None` if they are not numbers.
 fn last_two(text: &str) -> [Option<f64>; 2] {
     let mut parts = text.split(',').skip(2);
     let mut number = || {
@@ -223,7 +223,7 @@ fn last_two(text: &str) -> [Option<f64>; 2] {
     [number(), number()]
 }
 
-/// What follows a prefix, whose letters may be small.
+/// The text after a prefix, in upper or lower case; `None` without the prefix.
 fn after<'a>(text: &'a str, prefix: &str) -> Option<&'a str> {
     let own = text.get(..prefix.len())?;
     own.eq_ignore_ascii_case(prefix).then(|| text[prefix.len()..].trim())

@@ -5,7 +5,7 @@ use crate::error::{Fault, Place, Read};
 use super::columns::{Column, Kind};
 use super::header::{Distances, Header};
 
-/// What slopes of the header may differ by and are still one: the header is written in decimals.
+/// Largest difference between equal slopes of the header, which is written in decimals.
 const SAME_SLOPE: f64 = 1e-6;
 
 /// The reference line: distance along it, its height and its banking.
@@ -25,7 +25,7 @@ impl Line {
                 None => Ok(vec![constant(header, letter)?; rows]),
             };
         let start = header.road_or_zero("REFERENCE_LINE_START_Z") + header.road_or_zero("REFERENCE_LINE_OFFSET_Z");
-        // A slope leads from the row before to its own; that of the first row is not used.
+        // A slope is that from the previous row to its own row; the slope of the first row is not used.
         let rises = along(Kind::Slope, "S", 1)?
             .into_iter()
             .skip(1)
@@ -43,7 +43,7 @@ impl Line {
     }
 }
 
-/// A column of the reference line, which has a value in every row but so many first ones.
+/// A column of the reference line, which needs a value in every row except the first `unused` ones.
 fn whole(column: &Column, samples: &[f64], unused: usize) -> Read<Vec<f64>> {
     match samples.iter().skip(unused).position(|value| !value.is_finite()) {
         None => Ok(samples.to_vec()),
@@ -55,7 +55,7 @@ fn whole(column: &Column, samples: &[f64], unused: usize) -> Read<Vec<f64>> {
     }
 }
 
-/// A slope that does not change along the line; zero where none is stated.
+/// A slope that is constant along the line; zero if none is stated.
 fn constant(header: &Header, letter: &str) -> Read<f64> {
     let start = header.road_or_zero(&format!("REFERENCE_LINE_START_{letter}"));
     let name = format!("REFERENCE_LINE_END_{letter}");

@@ -1,8 +1,8 @@
-//! HDF5, as far as MATLAB uses it for version 7.3: groups of symbol tables, object headers of version 1, data in one piece or
-//! in chunks, deflated or not.
+//! The part of HDF5 that MATLAB uses for version 7.3: groups of symbol tables, object headers of version 1, data in one
+//! piece or in chunks, compressed by Deflate or not.
 //!
-//! Source: "HDF5 File Format Specification" 2.0 of The HDF Group. Files of superblock versions 2 and 3 are read by the crate that
-//! writes them here.
+//! Source: "HDF5 File Format Specification" 2.0 of The HDF Group. Files of superblock versions 2 and 3 are read by the
+//! crate that also writes version 7.3.
 
 // Messages of an object header.
 mod messages;
@@ -22,10 +22,10 @@ use super::value::{Array, Fields, Value, Variable, is_read, of_fields};
 use messages::{Class, Header};
 
 pub(super) const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
-/// Groups within groups.
+/// Largest depth of nested groups.
 const DEEPEST: usize = 16;
 
-/// The byte at which a superblock stands, if there is one where HDF5 allows it.
+/// The position of the superblock; `None` if there is none at a position that HDF5 allows.
 pub(super) fn superblock(file: &Bytes) -> Option<u64> {
     let places = std::iter::once(0).chain((9..24).map(|power| 1 << power));
     let mut places = places.take_while(|&at| at < file.len());
@@ -36,7 +36,7 @@ pub(super) fn superblock(file: &Bytes) -> Option<u64> {
     places.find(|&at| stands_at(at))
 }
 
-/// All variables of a file whose superblock stands at byte `at`.
+/// All variables of a file whose superblock is at byte `at`.
 pub(super) fn variables(file: &Bytes, at: u64, wanted: &Wanted) -> Read<Vec<Variable>> {
     let file = file.part(at, file.len() - at, "HDF5")?;
     let version = file.u8(8, "the superblock")?;
@@ -56,7 +56,7 @@ pub(super) fn variables(file: &Bytes, at: u64, wanted: &Wanted) -> Read<Vec<Vari
     let header = Header::read(&file, root)?;
     let mut variables = Vec::new();
     for (name, address) in reader.members(&header)? {
-        // Names of MATLAB's own begin with #.
+        // Names for internal use of MATLAB begin with #.
         if !name.starts_with('#') {
             let value = reader
                 .variable(&name, address, wanted)
@@ -78,7 +78,7 @@ fn too_new(file: &Bytes, at: u64, found: impl Into<String>) -> Box<Fault> {
 
 struct Reader<'a> {
     file: Bytes<'a>,
-    /// Objects, nodes and data that were read: none is read twice.
+    /// Positions of objects, nodes and data that were read; none is read twice.
     visited: HashSet<u64>,
 }
 
@@ -135,7 +135,7 @@ impl<'a> Reader<'a> {
             let units: Vec<u16> = numbers.iter().map(|&unit| unit as u16).collect();
             return Ok(Value::Text(String::from_utf16_lossy(&units)));
         }
-        // HDF5 counts its dimensions from the other end.
+        // HDF5 has its dimensions in the opposite order.
         let mut dimensions = header.dimensions;
         dimensions.reverse();
         Ok(Value::Numbers(Array { dimensions, numbers }))
@@ -235,10 +235,11 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Bytes of a name.
+/// Largest length of a name, bytes.
 const LONGEST_NAME: usize = 1024;
 
-/// An entry of a tree: a node of symbols, or a chunk of data with its bytes, the filters skipped, and where it begins.
+/// An entry of a tree: a node of symbols, or a chunk of data with its size in bytes, the mask of skipped filters and
+/// its position in the dataset.
 struct Leaf {
     size: u32,
     skipped: u32,

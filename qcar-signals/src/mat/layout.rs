@@ -1,4 +1,4 @@
-//! Channels from variables: structures as Testlab exports them, captures as dSPACE writes them, and plain arrays.
+//! Channels from variables: structures from Testlab, captures from dSPACE, and plain arrays.
 
 use crate::error::{Fault, Place, Read};
 use crate::find::Wanted;
@@ -51,8 +51,8 @@ fn missing(place: &Place, what: &str, expected: &str) -> Box<Fault> {
     Fault::new(place.clone(), format!("no {what}"), expected, remedy)
 }
 
-/// `x_values` with start, increment and unit, `y_values` with values, and `function_record` with a name. Values are shown in
-/// the unit of the label: what is stored, less the offset, by the factor of its transformation.
+/// `x_values` with start, increment and unit, `y_values` with values, and `function_record` with a name. Values are
+/// returned in the unit of the label: the stored value minus the offset, divided by the factor of the transformation.
 fn testlab(recording: &mut Recording, variable: &str, value: &Value, place: &Place, wanted: &Wanted) -> Read<()> {
     let quantity = ["y_values", "quantity"];
     let transformation = |name: &str| value.number(&["y_values", "quantity", "unit_transformation", name]);
@@ -103,8 +103,8 @@ fn testlab(recording: &mut Recording, variable: &str, value: &Value, place: &Pla
     Ok(())
 }
 
-/// `X`, of which an element holds the times, and `Y`, each element a channel with `Name`, `Data` and `Unit`; `XIndex` says
-/// which element of `X` is meant, from 1.
+/// `X`, of which one element has the times, and `Y`, each element of which is a channel with `Name`, `Data` and `Unit`;
+/// `XIndex` is the number of the element of `X`, from 1.
 fn dspace(recording: &mut Recording, variable: &str, mut value: Value, place: &Place, wanted: &Wanted) -> Read<()> {
     let mut elements = |name: &str| value.take(name).map(Value::into_elements).unwrap_or_default();
     let times = elements("X")
@@ -169,8 +169,8 @@ fn times_of(times: &[f64], factor: f64, name: &str, place: &Place) -> Read<TimeB
     })
 }
 
-/// Vectors and the columns of matrices. One that is named as times are is the time base of those of its length. Where that is
-/// as long as the rows of a matrix, its rows are channels.
+/// Vectors and the columns of matrices. A vector with the name of a time channel is the time base of all channels of
+/// its length. If it is as long as the rows of a matrix, the rows are channels.
 fn plain(recording: &mut Recording, arrays: Vec<(String, Array, Place)>, wanted: &Wanted) -> Read<()> {
     let mut bases: Vec<(usize, TimeBase)> = Vec::new();
     let mut channels = Vec::new();
@@ -207,8 +207,8 @@ fn plain(recording: &mut Recording, arrays: Vec<(String, Array, Place)>, wanted:
     Ok(())
 }
 
-/// The channels in an array: itself, or its columns or rows, each with its length. Of more dimensions, all but the first are taken
-/// as columns. One that was not read stays whole.
+/// The channels in an array: the array itself, or its columns or rows, each with its length. In an array of more
+/// dimensions, all but the first dimension are columns. An array that was not read is not split.
 fn split(name: &str, array: Array, is_timed: &dyn Fn(usize) -> bool) -> Vec<(String, usize, Vec<f64>)> {
     let rows = array.dimensions.first().map_or(1, |&rows| rows as usize).max(1);
     let columns = array.len() / rows;

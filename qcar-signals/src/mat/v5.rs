@@ -1,5 +1,5 @@
-//! MAT-files of versions 5 to 7: elements of a tag (type 4, bytes 4, or both in four bytes where it is small) and data that
-//! fill up eight bytes; variables may be packed.
+//! MAT-files of versions 5 to 7: elements of a tag (type 4, bytes 4, or both in four bytes for a small element) and
+//! data padded to eight bytes; variables may be packed.
 //!
 //! Source: "MAT-File Format" of The MathWorks.
 
@@ -17,9 +17,9 @@ use super::value::{Array, Fields, Value, Variable, is_read};
 
 const PACKED: u32 = 15;
 const MATRIX: u32 = 14;
-/// Packed bytes in which the name of a variable stands.
+/// Number of packed bytes that contain the name of a variable.
 const MOST_OF_A_HEAD: u64 = 4096;
-/// Structures within structures.
+/// Largest depth of nested structures.
 const DEEPEST: usize = 32;
 
 /// All variables of a file.
@@ -60,7 +60,7 @@ pub(super) fn variables(file: Bytes, wanted: &Wanted) -> Read<Vec<Variable>> {
     Ok(variables)
 }
 
-/// What a packed element holds.
+/// The content of a packed element.
 fn unpack(element: &Element, at: u64) -> Read<Vec<u8>> {
     let packed = element.data.all("packed data")?;
     let mut unpacked = Vec::new();
@@ -73,7 +73,7 @@ fn unpack(element: &Element, at: u64) -> Read<Vec<u8>> {
     }
 }
 
-/// The name of a variable of which only the beginning is there.
+/// The name of a variable, from the beginning of its packed data.
 fn name_of_packed(file: &Bytes, at: u64) -> Option<String> {
     let there = file.len().checked_sub(at + 8)?;
     let packed = file.take(at + 8, there.min(MOST_OF_A_HEAD), "packed data").ok()?;
@@ -85,13 +85,13 @@ fn name_of_packed(file: &Bytes, at: u64) -> Option<String> {
     }
     let content = Content::of_bytes(&begin[..length]);
     let bytes = Bytes::unpacked(&content, file.order, at);
-    // Behind the tag of the matrix, its flags and its dimensions.
+    // After the tag of the matrix, its flags and its dimensions.
     let dimensions = element(&bytes, 24).ok()?;
     let name = element(&bytes, dimensions.next).ok()?;
     Some(field(&name.data.all("a name").ok()?))
 }
 
-/// A piece of a file.
+/// An element of a file.
 #[derive(Clone, Copy)]
 struct Element<'a> {
     kind: u32,
@@ -123,7 +123,7 @@ fn element<'a>(from: &Bytes<'a>, at: u64) -> Read<Element<'a>> {
     })
 }
 
-/// Elements of a matrix: flags, dimensions, name, then what its class says.
+/// Elements of a matrix: flags, dimensions, name, then elements that depend on its class.
 fn matrix(data: &Bytes, depth: usize, wanted: &Wanted) -> Read<(String, Value)> {
     if data.len() == 0 {
         return Ok((String::new(), Value::Other("nothing")));
@@ -216,7 +216,7 @@ fn cells(data: &Bytes, mut at: u64, depth: usize) -> Read<Vec<Value>> {
     Ok(cells)
 }
 
-/// The value of an element within another, and where the next one begins.
+/// The value of an element within another, and the position of the next one.
 fn nested(data: &Bytes, at: u64, depth: usize) -> Read<(Value, u64)> {
     let element = element(data, at)?;
     if element.kind != MATRIX || depth == 0 {

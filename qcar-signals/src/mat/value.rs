@@ -1,4 +1,4 @@
-//! What a variable of a MAT-file is, however the file stores it.
+//! Variables of a MAT-file, independent of the version of the file.
 
 use crate::error::Place;
 use crate::find::Wanted;
@@ -11,15 +11,15 @@ pub(super) struct Variable {
     pub(super) place: Place,
 }
 
-/// What a variable is. Arrays lie column by column.
+/// The value of a variable. Arrays are stored column by column.
 #[derive(Clone, Debug)]
 pub(super) enum Value {
     Numbers(Array),
     Text(String),
-    /// Elements of a structure array: each has its fields.
+    /// Elements of a structure array, each with its fields.
     Structs(Vec<Fields>),
     Cells(Vec<Value>),
-    /// Anything else: what it is.
+    /// Anything else, with a description.
     Other(&'static str),
 }
 
@@ -27,11 +27,12 @@ pub(super) enum Value {
 #[derive(Clone, Debug)]
 pub(super) struct Array {
     pub(super) dimensions: Vec<u64>,
-    /// None where it was not read.
+    /// Empty if it was not read.
     pub(super) numbers: Vec<f64>,
 }
 
-/// Whether the numbers of a variable are to be read: those of a wanted channel, what may be its times, and a single value.
+/// True if the numbers of a variable are read: for a wanted channel, a variable that may be its times, and a single
+/// value.
 pub(super) fn is_read(variable: &str, dimensions: &[u64], wanted: &Wanted) -> bool {
     let single = dimensions.iter().all(|&size| size == 1);
     single || is_time(variable) || wanted.has("", variable) || wanted.may_begin(&format!("{variable}["))
@@ -39,7 +40,8 @@ pub(super) fn is_read(variable: &str, dimensions: &[u64], wanted: &Wanted) -> bo
 
 pub(super) type Fields = Vec<(String, Value)>;
 
-/// A group of HDF5 as a structure. Where every field is a list of references, it is a structure array of as many elements.
+/// A group of HDF5 as a structure. If every field is a list of references, it is a structure array with as many
+/// elements.
 pub(super) fn of_fields(fields: Fields) -> Value {
     if fields.is_empty() || fields.iter().any(|(_, value)| !matches!(value, Value::Cells(_))) {
         return Value::Structs(vec![fields]);
@@ -62,7 +64,7 @@ pub(super) fn of_fields(fields: Fields) -> Value {
 }
 
 impl Value {
-    /// What lies at a path of fields, through structures of one element.
+    /// The value at a path of fields, through structures of one element.
     pub(super) fn at(&self, path: &[&str]) -> Option<&Value> {
         let Some((first, rest)) = path.split_first() else {
             return Some(self);
@@ -77,7 +79,7 @@ impl Value {
         }
     }
 
-    /// A field of a structure of one element, taken out.
+    /// Removes a field of a structure of one element and returns it.
     pub(super) fn take(&mut self, name: &str) -> Option<Value> {
         let Value::Structs(elements) = self else { return None };
         let field = elements.iter_mut().flatten().find(|(own, _)| own == name);
@@ -122,7 +124,7 @@ impl Value {
 }
 
 impl Array {
-    /// One whose numbers are not read.
+    /// An array whose numbers are not read.
     pub(super) fn unread(dimensions: Vec<u64>) -> Self {
         Array {
             dimensions,
@@ -130,7 +132,7 @@ impl Array {
         }
     }
 
-    /// How many numbers it has, whether they were read or not.
+    /// Number of elements, whether they were read or not.
     pub(super) fn len(&self) -> usize {
         let all = self
             .dimensions

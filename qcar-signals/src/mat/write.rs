@@ -1,5 +1,5 @@
-//! MAT-files, written: of version 5 what MATLAB, Octave and SciPy load, of version 7.3 what MATLAB and programs for HDF5 do.
-//! Nothing is packed.
+//! Writes MAT-files: version 5 for MATLAB, Octave and SciPy, version 7.3 for MATLAB and programs for HDF5. Nothing is
+//! packed.
 //!
 //! Source of version 5: "MAT-File Format" of The MathWorks.
 
@@ -21,7 +21,7 @@ const MATRIX: u32 = 14;
 /// The longest name of a variable or field, in bytes.
 pub const LONGEST_NAME: usize = 63;
 
-/// What is written of a variable.
+/// The value of a variable to be written.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Array {
     /// Rows and columns, and as many numbers, column by column.
@@ -45,7 +45,7 @@ impl Array {
         Array::Numbers([numbers.len(), 1], numbers)
     }
 
-    /// Rows of so many numbers.
+    /// A matrix from its rows, each of `columns` numbers.
     pub fn rows(rows: &[Vec<f64>], columns: usize) -> Array {
         let numbers = (0..columns).flat_map(|column| rows.iter().map(move |row| row[column]));
         Array::Numbers([rows.len(), columns], numbers.collect())
@@ -73,14 +73,14 @@ impl Array {
     }
 }
 
-/// A file with these variables; `description` is what it says of itself in a line of 116 letters at most.
+/// A file with these variables; `description` is the line of at most 116 characters in its header.
 ///
-/// A name of a variable or field that MATLAB does not take is changed into one that it does: other characters than letters of ASCII,
-/// digits and `_` become `_`, `x` stands before what begins with no letter and `_` after a keyword; what is longer than
-/// [`LONGEST_NAME`] is cut off there.
+/// Names of variables and fields that are not valid in MATLAB are changed: characters other than ASCII letters, digits
+/// and `_` become `_`, `x` is prefixed if the name does not begin with a letter, `_` is appended to a keyword, and a
+/// name longer than [`LONGEST_NAME`] is cut.
 ///
 /// # Errors
-/// Two variables, or two fields of a structure, whose names would then be the same.
+/// Fails if two variables, or two fields of a structure, would get the same name.
 pub fn v5(description: &str, variables: &[(String, Array)]) -> Result<Vec<u8>, String> {
     let mut file = vec![b' '; VERSION];
     for (to, from) in file
@@ -89,7 +89,7 @@ pub fn v5(description: &str, variables: &[(String, Array)]) -> Result<Vec<u8>, S
     {
         *to = if from.is_ascii_graphic() { from } else { b' ' };
     }
-    // No data of a subsystem.
+    // No subsystem data.
     file[116..].fill(0);
     file.extend([0x00, 0x01, b'I', b'M']);
     debug_assert_eq!(file.len(), HEADER);
@@ -123,13 +123,13 @@ fn matrix(name: &str, array: &Array) -> Result<Vec<u8>, String> {
     Ok(all)
 }
 
-/// Elements of a cell array or structure, one after the other.
+/// Elements of a cell array or structure, one after another.
 fn unnamed<'a>(arrays: impl IntoIterator<Item = &'a Array>) -> Result<Vec<u8>, String> {
     let matrices = arrays.into_iter().map(|array| matrix("", array));
     Ok(matrices.collect::<Result<Vec<_>, _>>()?.concat())
 }
 
-/// Each name filled up with zeros, one of which ends it.
+/// Names padded with zeros, at least one for each.
 fn field_names(fields: &[String]) -> Result<Vec<u8>, String> {
     let fixed = |name: &String| {
         let mut fixed = [0; LONGEST_NAME + 1];
@@ -140,7 +140,7 @@ fn field_names(fields: &[String]) -> Result<Vec<u8>, String> {
     Ok(names.iter().flat_map(fixed).collect())
 }
 
-/// A tag and data that fill up eight bytes; up to four bytes stand in the tag.
+/// A tag and data padded to eight bytes; up to four bytes are stored in the tag.
 fn element(kind: u32, data: &[u8]) -> Vec<u8> {
     let length = data.len() as u32;
     let small = !data.is_empty() && data.len() <= 4;

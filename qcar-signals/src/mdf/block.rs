@@ -5,7 +5,7 @@ use crate::error::{Fault, Place, Read};
 
 /// Bytes before the links.
 const HEAD: u64 = 24;
-/// Bytes of a name or a unit, with what XML stands around it.
+/// Largest size of a name or unit, with its XML, bytes.
 const LONGEST_TEXT: u64 = 65_536;
 
 /// A file as blocks.
@@ -13,7 +13,7 @@ pub(super) struct File<'a> {
     pub(super) bytes: Bytes<'a>,
 }
 
-/// A block, its size checked against the file.
+/// A block, whose size was checked against the file.
 #[derive(Clone)]
 pub(super) struct Block<'a> {
     pub(super) at: u64,
@@ -23,7 +23,7 @@ pub(super) struct Block<'a> {
 }
 
 impl<'a> File<'a> {
-    /// The block that a link leads to; `what` says which it should be.
+    /// The block of a link; `what` describes the expected block.
     pub(super) fn block(&self, at: u64, what: &str) -> Read<Block<'a>> {
         if at >= self.bytes.len() {
             let found = format!(
@@ -56,7 +56,7 @@ impl<'a> File<'a> {
         })
     }
 
-    /// The same, of this id.
+    /// The same; it must have this id.
     pub(super) fn named(&self, at: u64, id: &[u8; 4], what: &str) -> Read<Block<'a>> {
         let block = self.block(at, what)?;
         if block.id == *id {
@@ -69,7 +69,7 @@ impl<'a> File<'a> {
         Err(Fault::damaged(block.place(), found, expected))
     }
 
-    /// The text that a link leads to; empty where it leads nowhere. Of XML, what stands between `<TX>` and `</TX>`.
+    /// The text of a link; empty without a link. In XML, the text between `<TX>` and `</TX>`.
     pub(super) fn text(&self, at: u64) -> Read<String> {
         if at == 0 {
             return Ok(String::new());
@@ -103,7 +103,7 @@ impl<'a> File<'a> {
 }
 
 impl Block<'_> {
-    /// A link, 0 where there is none.
+    /// A link; 0 if there is none.
     pub(super) fn link(&self, index: usize) -> u64 {
         self.links.get(index).copied().unwrap_or(0)
     }

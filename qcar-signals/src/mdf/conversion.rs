@@ -11,7 +11,7 @@ pub(super) enum Conversion {
     Polynomial([f64; 6]),
     /// Pairs of stored and physical values, with straight lines between them or without.
     Table { pairs: Vec<(f64, f64)>, interpolated: bool },
-    /// Ranges from the first to the second number, and what stands for all of one; a value elsewhere.
+    /// Ranges from the first to the second number, each with its physical value, and the value outside of all ranges.
     Ranges {
         ranges: Vec<(f64, f64, f64)>,
         otherwise: f64,
@@ -27,7 +27,7 @@ impl Conversion {
         factor: 1.0,
     };
 
-    /// Turns stored into physical values; those that have a text stay as they are.
+    /// Converts stored to physical values; values with a text do not change.
     pub(super) fn apply(&self, values: &mut [f64]) {
         let mut each = |rule: &dyn Fn(f64) -> f64| values.iter_mut().for_each(|value| *value = rule(*value));
         match self {
@@ -57,7 +57,8 @@ impl Conversion {
     }
 }
 
-/// The physical value of the pairs at `x`: the end values outside, the nearer one where nothing is interpolated.
+/// The physical value of the pairs at `x`: the value of the nearer pair without interpolation, and the end values
+/// outside.
 fn in_table(pairs: &[(f64, f64)], interpolated: bool, x: f64) -> f64 {
     let above = pairs.partition_point(|pair| pair.0 <= x);
     match (above.checked_sub(1).map(|below| pairs[below]), pairs.get(above)) {

@@ -1,4 +1,5 @@
-//! The records of a data group, wherever they lie: shown in pieces, so that they are never in memory all at once.
+//! The records of a data group, from one or several blocks. They are read in pieces, so that they are never in memory
+//! all at once.
 
 use crate::bytes::{Bytes, Order};
 use crate::content::Content;
@@ -8,10 +9,10 @@ use super::Visited;
 use super::block::{Block, File};
 use super::packed::Packed;
 
-/// Blocks within blocks: a header list, a list, a packed block.
+/// Largest depth of nested blocks: a header list, a list, a packed block.
 const DEEPEST: usize = 4;
 
-/// Bytes in several parts, one after the other.
+/// Bytes in several parts, one after another.
 #[derive(Default)]
 pub(super) struct Data<'a> {
     parts: Vec<Part<'a>>,
@@ -31,7 +32,7 @@ impl<'a> Data<'a> {
         data
     }
 
-    /// All bytes of a data block of MDF 4 and of what it lists, in their order.
+    /// All bytes of a data block of MDF 4 and of the blocks that it lists, in their order.
     pub(super) fn listed(file: &File<'a>, at: u64) -> Read<Self> {
         let mut data = Data::default();
         if at != 0 {
@@ -50,17 +51,17 @@ impl<'a> Data<'a> {
         self.parts.push(part);
     }
 
-    /// Bytes in all; what packed parts say that they hold.
+    /// Total number of bytes; for packed parts, the declared unpacked size.
     pub(super) fn len(&self) -> u64 {
         self.length
     }
 
-    /// Whether each of these bytes is in the file, so that memory may be taken for them.
+    /// True if all of these bytes are in the file, so that memory may be allocated for them.
     pub(super) fn is_there(&self) -> bool {
         self.parts.iter().all(|part| matches!(part, Part::Plain(_)))
     }
 
-    /// The first `count` of these bytes, shown in pieces of a whole number of `unit` bytes, but for the end.
+    /// Passes the first `count` bytes to a function, in pieces of a whole number of `unit` bytes except the last.
     pub(super) fn pieces(&self, count: u64, unit: usize, mut show: impl FnMut(&[u8])) -> Read<()> {
         let mut pieces = Pieces {
             left: count,
@@ -120,9 +121,9 @@ fn gather<'a>(file: &File<'a>, block: &Block<'a>, depth: usize, visited: &mut Vi
     Ok(())
 }
 
-/// Parts cut anew.
+/// Divides parts into pieces of another size.
 struct Pieces<'s> {
-    /// Bytes that are still to be shown.
+    /// Number of bytes that remain.
     left: u64,
     unit: usize,
     /// The beginning of a piece whose end is in the next part.

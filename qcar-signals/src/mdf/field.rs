@@ -1,29 +1,29 @@
-//! Where the values of a channel lie in the records of its group.
+//! Position of the values of a channel in the records of its group.
 
 use crate::bytes::{Number, Order};
 
 use super::Piece;
 
-/// Where the values of a channel lie in a record.
+/// Position of the values of a channel in a record.
 pub(super) enum Field {
     /// The value is the number of the record, from 0.
     Index,
     /// Bits of the record.
     Bits {
-        /// Of the first byte that holds a bit of the value.
+        /// Position of the first byte with a bit of the value.
         byte: usize,
-        /// Of the lowest bit, in the byte of lowest value.
+        /// Position of the lowest bit in the least significant byte.
         bit: u32,
-        /// How many.
+        /// Number of bits.
         count: u32,
         kind: Kind,
         order: Order,
-        /// A bit that says of each record whether its value is invalid.
+        /// Marks invalid values.
         invalid: Invalid,
     },
 }
 
-/// What the bits mean.
+/// The type of the value.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Kind {
     Unsigned,
@@ -31,7 +31,7 @@ pub(super) enum Kind {
     Float,
 }
 
-/// Which values of a channel are invalid.
+/// The invalid values of a channel.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Invalid {
     None,
@@ -44,7 +44,7 @@ pub(super) enum Invalid {
 }
 
 impl Field {
-    /// How many bits of a record it takes; a byte where it takes none.
+    /// Number of bits of a record that it uses; 8 if it uses none.
     pub(super) fn bits(&self) -> usize {
         match self {
             Field::Index => 8,
@@ -55,7 +55,7 @@ impl Field {
     /// Checks that the field lies within a record.
     ///
     /// # Errors
-    /// Why it cannot be read.
+    /// Fails with the reason why it cannot be read.
     pub(super) fn checked(self, record: usize) -> Result<Field, String> {
         let Field::Bits {
             byte,
@@ -83,7 +83,7 @@ impl Field {
         }
     }
 
-    /// Adds the stored values of some records, not a number where one is invalid.
+    /// Adds the stored values of some records; NaN for an invalid one.
     pub(super) fn values(&self, records: &Piece, into: &mut Vec<f64>) {
         let Field::Bits {
             byte,
@@ -129,7 +129,7 @@ impl Field {
     }
 }
 
-/// The number that fills whole bytes, if it is one.
+/// The storage type, if the value fills whole bytes.
 fn number(kind: Kind, bit: u32, count: u32) -> Option<Number> {
     if bit != 0 {
         return None;

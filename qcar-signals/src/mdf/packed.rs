@@ -1,4 +1,4 @@
-//! Packed data blocks of MDF 4: deflated, and perhaps transposed before that.
+//! Packed data blocks of MDF 4: compressed by Deflate, possibly after a transposition.
 
 use std::io::Read as _;
 
@@ -9,7 +9,7 @@ use crate::error::{Fault, Place, Read};
 
 use super::block::Block;
 
-/// Bytes that a packed one can become at most.
+/// Largest ratio of unpacked to packed size.
 const LARGEST_RATIO: u64 = 1100;
 
 /// A packed block that is not unpacked yet.
@@ -18,7 +18,7 @@ pub(super) struct Packed<'a> {
     packed: Bytes<'a>,
     /// Bytes of the records before they were packed.
     pub(super) length: u64,
-    /// Bytes of a row, where rows and columns were exchanged before.
+    /// Bytes of a row if the data were transposed before packing.
     transposed: Option<usize>,
 }
 
@@ -56,7 +56,7 @@ impl<'a> Packed<'a> {
         Fault::damaged(self.place.clone(), found, format!("{} bytes", self.length))
     }
 
-    /// What it holds.
+    /// The unpacked data.
     pub(super) fn unpacked(&self) -> Read<Vec<u8>> {
         let packed = self.packed.all("packed data")?;
         let mut bytes = Vec::new();
@@ -71,8 +71,8 @@ impl<'a> Packed<'a> {
     }
 }
 
-/// Records of `width` bytes from their transpose: all first bytes, all second ones and so on. What does not fill a record
-/// stands after it as it was.
+/// Records of `width` bytes from their transpose: all first bytes, all second ones and so on. Bytes after the last
+/// whole record are not transposed.
 fn transposed_back(bytes: &[u8], width: usize) -> Vec<u8> {
     let records = bytes.len().checked_div(width).unwrap_or(0);
     let mut rows = bytes.to_vec();

@@ -11,10 +11,10 @@ use super::data::Data;
 use super::field::{Field, Invalid, Kind};
 use super::{Channel, Records, Role, Visited, add_group};
 
-/// Where the header block stands.
+/// Position of the header block.
 const HEADER: u32 = 64;
 
-/// Reads a file of version 3. Byte 24 of it is 0 where numbers begin with their lowest byte.
+/// Reads a file of version 3. Its byte 24 is 0 if numbers begin with their least significant byte.
 pub(super) fn read(bytes: Bytes, version: &str, wanted: &Wanted) -> Read<Recording> {
     let order = match bytes.u16(24, "the byte order")? {
         0 => Order::Little,
@@ -33,7 +33,7 @@ pub(super) fn read(bytes: Bytes, version: &str, wanted: &Wanted) -> Read<Recordi
     Ok(recording)
 }
 
-/// The block that a link leads to, which must have this id.
+/// The block of a link, which must have this id.
 fn block<'a>(file: &Bytes<'a>, at: u32, id: &[u8; 2], what: &str) -> Read<Bytes<'a>> {
     let at = u64::from(at);
     if at >= file.len() {
@@ -106,7 +106,7 @@ fn add_data_group(
 }
 
 impl Group {
-    /// Adds the channels, whose records have so many bytes of an id before them and around them.
+    /// Adds the channels. Their records have an id of `before` bytes in front, and ids of `around` bytes in total.
     fn add_to(self, recording: &mut Recording, data: &Data, [before, around]: [usize; 2], wanted: &Wanted) -> Read<()> {
         let stride = self.length + around;
         let records = Records::checked(data, before, stride, self.records.into(), &self.name, &self.place)?;
@@ -114,7 +114,7 @@ impl Group {
     }
 }
 
-/// The records of each group, where they were stored as they came: an id, the record, and perhaps the id again.
+/// The records of each group from unsorted data: an id, the record, and possibly the id again.
 fn sorted(groups: &[Group], data: &[u8], around: usize, start: u32) -> Read<Vec<Vec<u8>>> {
     let mut own = vec![Vec::new(); groups.len()];
     let mut rest = data;
@@ -227,7 +227,8 @@ fn bits(block: &Bytes, further: usize, own: Order) -> Read<Result<Field, String>
     }))
 }
 
-/// Unit and conversion. Inner: why the channel is passed over. Conversion: unit 22 to 41, type 42, size 44, parameters 46.
+/// Unit and conversion; the inner error is the reason why the channel is left out. Conversion: unit 22 to 41, type 42,
+/// size 44, parameters 46.
 fn conversion(file: &Bytes, at: u32) -> Read<(String, Result<Conversion, String>)> {
     let block = block(file, at, b"CC", "a conversion")?;
     let unit = field(&block.take(22, 20, "a unit")?);

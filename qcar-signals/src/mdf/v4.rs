@@ -14,7 +14,7 @@ use super::data::Data;
 use super::field::{Field, Invalid, Kind};
 use super::{Channel, Records, Role, Visited, add_group};
 
-/// Where the header block stands.
+/// Position of the header block.
 const HEADER: u64 = 64;
 
 /// Reads a file of version 4.
@@ -33,7 +33,7 @@ pub(super) fn read(bytes: Bytes, version: &str, wanted: &Wanted) -> Read<Recordi
     Ok(recording)
 }
 
-/// A channel group: which records are its own, and its channels.
+/// A channel group: the id of its records, and its channels.
 struct Group {
     id: u64,
     name: String,
@@ -65,7 +65,7 @@ fn add_data_group(
     match groups.as_slice() {
         [only] if !only.variable_length => groups.remove(0).add_to(recording, &data, id_size, wanted),
         _ => {
-            // Records that were stored as they came are sorted in memory, so they are not gone through all at once.
+            // Unsorted records are sorted in memory, so they are not summarised in one pass.
             let wanted = match wanted {
                 Wanted::Summaries => &Wanted::These(&[]),
                 of_some => of_some,
@@ -91,7 +91,7 @@ impl Group {
             .any(|channel| wanted.has(&self.name, &channel.name))
     }
 
-    /// Adds the channels, whose records stand in `data` with so many bytes of an id before each.
+    /// Adds the channels. Their records are in `data`, each after an id of `before` bytes.
     fn add_to(self, recording: &mut Recording, data: &Data, before: usize, wanted: &Wanted) -> Read<()> {
         let stride = before + self.length;
         let records = Records::checked(data, before, stride, self.cycles, &self.name, &self.place)?;
@@ -99,7 +99,7 @@ impl Group {
     }
 }
 
-/// The records of several groups that were stored as they came: an id, then the record.
+/// The records of several groups from unsorted data: an id, then the record.
 fn sorted(groups: &[Group], data: &Data, id_size: usize, place: &Place) -> Read<HashMap<u64, Vec<u8>>> {
     let read = groups.iter().filter(|group| !group.variable_length && group.cycles > 0);
     let mut sorting = Sorting {
@@ -125,7 +125,7 @@ fn half_a_record(place: &Place, at: u64) -> Box<Fault> {
     Fault::cut_off(place.clone(), found, "whole records")
 }
 
-/// Records that are given to their groups.
+/// Sorts records into their groups.
 struct Sorting<'a> {
     own: HashMap<u64, Vec<u8>>,
     groups: HashMap<u64, &'a Group>,
@@ -133,9 +133,9 @@ struct Sorting<'a> {
     place: &'a Place,
     /// The byte of the data at which `pending` begins.
     at: u64,
-    /// Records that are not given away yet.
+    /// Bytes of records that are not sorted yet.
     pending: Vec<u8>,
-    /// Bytes that the first of them has at least.
+    /// Smallest size of the first of these records, bytes.
     needed: usize,
     outcome: Read<()>,
 }
@@ -161,8 +161,8 @@ impl Sorting<'_> {
         self.at += given as u64;
     }
 
-    /// Gives away the record that begins at a byte of the pending ones: its bytes, or those that it has at least where it is not
-    /// all there.
+    /// Sorts the record that begins at a byte of `pending`. Returns its size, or its smallest size if it is not
+    /// complete.
     fn give(&mut self, from: usize) -> Read<Result<usize, usize>> {
         let (at, bytes) = (self.at + from as u64, &self.pending[from..]);
         let number = |bytes: &[u8]| bytes.iter().rev().fold(0, |all, &byte| all << 8 | u64::from(byte));
@@ -229,7 +229,7 @@ struct Record {
     length: usize,
 }
 
-/// The channels of a list, and those of which a channel is composed.
+/// Adds the channels of a list, and those of which a channel is composed.
 fn add_channels(file: &File, first: u64, record: &Record, visited: &mut Visited, all: &mut Vec<Channel>) -> Read<()> {
     let mut lists = vec![first];
     while let Some(mut at) = lists.pop() {
@@ -288,7 +288,7 @@ fn channel(file: &File, block: &Block, record: &Record, is_array: bool) -> Read<
     })
 }
 
-/// Where the values of a channel lie, or why they are passed over.
+/// Position of the values of a channel, or why they are left out.
 fn field(data: Bytes, record: &Record) -> Read<Result<Field, String>> {
     let what = "a channel";
     let (kind, order) = match data.u8(2, what)? {
@@ -324,8 +324,8 @@ fn field(data: Bytes, record: &Record) -> Read<Result<Field, String>> {
     Ok(field.checked(record.length))
 }
 
-/// Conversion: links name, unit, comment, inverse, references; data: type 1, precision 1, flags 2, number of references 2,
-/// number of values 2, range 16, values. Inner: why the channel is passed over.
+/// Conversion: links name, unit, comment, inverse, references; data: type 1, precision 1, flags 2, number of references
+/// 2, number of values 2, range 16, values. The inner error is the reason why the channel is left out.
 fn conversion(file: &File, block: &Block) -> Read<Result<Conversion, String>> {
     let kind = block.data.u8(0, "a conversion")?;
     let count = block.data.u16(6, "a conversion")?;
@@ -355,7 +355,7 @@ fn conversion(file: &File, block: &Block) -> Read<Result<Conversion, String>> {
     })
 }
 
-/// The texts of values; one that is not a text but a further conversion is left out.
+/// The texts of values; a value with a further conversion instead of a text is left out.
 fn labels(file: &File, block: &Block, values: &[f64]) -> Read<Vec<(f64, String)>> {
     let mut labels = Vec::new();
     for (&value, &at) in values.iter().zip(block.links.iter().skip(4)) {

@@ -1,22 +1,22 @@
-//! MDF 4.10, written: sorted and not packed, a group for each time base.
+//! Writes MDF 4.10: sorted and not packed, with a group for each time base.
 //!
-//! Source: ASAM MDF 4.1, as its public descriptions and open readers give it.
+//! Source: public descriptions and open readers of ASAM MDF 4.1.
 
 /// Channels that were sampled together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Group {
-    /// What it is called.
+    /// Name.
     pub name: String,
-    /// When the samples were taken, s; finite and rising.
+    /// Times of the samples, s; finite and increasing.
     pub times: Vec<f64>,
-    /// Each with as many samples as there are times.
+    /// The channels, each with as many samples as there are times.
     pub channels: Vec<Channel>,
 }
 
 /// A channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
-    /// What it is called.
+    /// Name.
     pub name: String,
     /// The unit of its samples.
     pub unit: String,
@@ -25,24 +25,24 @@ pub struct Channel {
 }
 
 const IDENTIFICATION: usize = 64;
-/// Value of a block of text or data: after its head there are no links.
+/// Bytes of the head of a block; a block of text or data has no links after it.
 const HEAD: usize = 24;
 const MASTER: u8 = 2;
 const TIME: u8 = 1;
 const FLOAT: u8 = 4;
 const BITS: u32 = 64;
 
-/// A file with these groups; `tool` is the program that writes it. Time counts from 0 on 1 January 1970, since what is
-/// computed has no date.
+/// A file with these groups; `tool` is the name of the writing program. The start time is 1 January 1970, since
+/// computed data have no date.
 pub fn v4(tool: &str, groups: &[Group]) -> Vec<u8> {
     let mut file = File(identification(tool));
-    // The header stands first; what it refers to is not written yet.
+    // The header comes first; the blocks of its links are not written yet.
     let header = file.block(b"HD", &[0; 6], &[0; 32]);
     let comment = format!("<FHcomment><TX/><tool_id>{tool}</tool_id><tool_vendor/><tool_version/></FHcomment>");
     let comment = file.text(b"MD", &comment);
     let history = file.block(b"FH", &[0, comment], &[0; 16]);
     let mut first = 0;
-    // The last group is written first, so that each knows the one after it.
+    // The last group is written first, since each has a link to the next.
     for group in groups.iter().rev() {
         first = file.group(group, first);
     }
@@ -60,11 +60,11 @@ fn identification(tool: &str) -> Vec<u8> {
     block
 }
 
-/// A file as far as it is written.
+/// The part of a file that is written.
 struct File(Vec<u8>);
 
 impl File {
-    /// Adds a block, which begins at a multiple of eight, and gives its place.
+    /// Adds a block at a multiple of eight bytes and returns its position.
     fn block(&mut self, kind: &[u8; 2], links: &[u64], data: &[u8]) -> u64 {
         self.0.resize(self.0.len().next_multiple_of(8), 0);
         let place = self.0.len() as u64;
@@ -77,13 +77,13 @@ impl File {
         place
     }
 
-    /// Lets a link of a block that is there lead to a place.
+    /// Sets a link of an existing block to a position.
     fn link(&mut self, block: u64, link: usize, to: u64) {
         let at = block as usize + HEAD + 8 * link;
         self.0[at..at + 8].copy_from_slice(&to.to_le_bytes());
     }
 
-    /// A text, ended by a zero and filled up to a multiple of eight.
+    /// A text, terminated by a zero and padded to a multiple of eight bytes.
     fn text(&mut self, kind: &[u8; 2], text: &str) -> u64 {
         let mut data = text.as_bytes().to_vec();
         data.resize((data.len() + 1).next_multiple_of(8), 0);
@@ -109,13 +109,13 @@ impl File {
         self.block(b"DG", &[next, channels, data, 0], &[0; 8])
     }
 
-    /// A channel of type and synchronisation `kinds`, at a place in the record.
+    /// A channel of type and synchronisation `kinds`, at a position in the record.
     fn channel(&mut self, name: &str, unit: &str, kinds: [u8; 2], place: u32, next: u64) -> u64 {
         let (name, unit) = (self.text(b"TX", name), self.text(b"TX", unit));
         let mut about = vec![kinds[0], kinds[1], FLOAT, 0];
         about.extend((8 * place).to_le_bytes());
         about.extend(BITS.to_le_bytes());
-        // Flags, invalidation, precision, attachments, and ranges that are not told.
+        // Flags, invalidation, precision, attachments, and ranges, which are not stated.
         about.resize(72, 0);
         self.block(b"CN", &[next, 0, name, 0, 0, 0, unit, 0], &about)
     }

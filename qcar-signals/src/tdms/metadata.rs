@@ -12,10 +12,10 @@ pub(super) struct Described {
     pub(super) properties: HashMap<String, Property>,
 }
 
-/// How the raw data of an object lie in each chunk of a segment.
+/// Arrangement of the raw data of an object in each chunk of a segment.
 #[derive(Clone)]
 pub(super) struct Index {
-    /// Values in a chunk.
+    /// Number of values in a chunk.
     pub(super) count: u64,
     pub(super) layout: Layout,
 }
@@ -23,7 +23,7 @@ pub(super) struct Index {
 #[derive(Clone)]
 pub(super) enum Layout {
     Plain(Number),
-    /// Bytes in a chunk that are no numbers.
+    /// Data other than numbers, with their size in a chunk, bytes.
     Unread {
         bytes: u64,
         why: String,
@@ -35,13 +35,13 @@ pub(super) enum Layout {
     },
 }
 
-/// Where DAQmx put a value.
+/// Position of a DAQmx value.
 #[derive(Clone)]
 pub(super) struct Scaler {
     pub(super) id: u32,
     pub(super) number: Number,
     pub(super) buffer: u32,
-    /// In each row of the buffer.
+    /// Position in each row of the buffer.
     pub(super) byte: u32,
 }
 
@@ -76,7 +76,7 @@ impl Properties {
     }
 }
 
-/// How often the bytes of a row may be used as values.
+/// Largest number of bytes that values use, relative to those of a row.
 const MOST_USES: u64 = 16;
 
 impl Index {

@@ -1,21 +1,21 @@
-//! From raw to physical values, as the properties `NI_Scale[…]` of a channel say.
+//! Conversion from raw to physical values by the properties `NI_Scale[…]` of a channel.
 
 use super::metadata::Properties;
 
-/// What a scale takes in if that is not another one.
+/// Number of the input of a scale that takes raw values.
 const RAW: u32 = u32::MAX;
-/// Scales of a channel.
+/// Largest number of scales of a channel.
 const MOST: usize = 32;
 
-/// Scales, each of which takes in raw values or the result of one before it.
+/// Scales, each of which takes raw values or the result of an earlier one.
 pub(super) struct Scaling {
-    /// By their numbers; nothing for a number that names a scaler of DAQmx.
+    /// The scales by their numbers; `None` for the number of a DAQmx scaler.
     scales: Vec<Option<Scale>>,
 }
 
 struct Scale {
     input: u32,
-    /// Of 1, x, x² and so on.
+    /// Coefficients of 1, x, x² and so on.
     coefficients: Vec<f64>,
 }
 
@@ -23,7 +23,7 @@ impl Scaling {
     /// The scales of a channel.
     ///
     /// # Errors
-    /// Why they cannot be followed.
+    /// Fails with the reason why they cannot be applied.
     pub(super) fn of(properties: &Properties) -> Result<Scaling, String> {
         let done = properties
             .text("NI_Scaling_Status")
@@ -42,7 +42,7 @@ impl Scaling {
     /// The result of the last scale.
     ///
     /// # Errors
-    /// A scale whose input does not exist.
+    /// Fails if the input of a scale does not exist.
     pub(super) fn apply(&self, mut raw: Vec<(Option<u32>, Vec<f64>)>) -> Result<Vec<f64>, String> {
         if raw.is_empty() {
             return Ok(Vec::new());

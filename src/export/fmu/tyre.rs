@@ -116,7 +116,7 @@ impl OnTyre {
     pub fn profile(&self) -> String {
         let points = self.road.iter().map(|[x, z]| format!("    {{{x:?}, {z:?}}},\n"));
         format!(
-            "/* The profile, x and z in m, and above which x the wheel's centre is at time 0. */\n#ifndef ROAD_H\n#define ROAD_H\n\n\
+            "/* The profile, x and z in m, and the x of the wheel's centre at time 0. */\n#ifndef ROAD_H\n#define ROAD_H\n\n\
              #define ROAD_POINTS {}\n#define ROAD_START {:?}\n\nstatic const double ROAD[ROAD_POINTS][2] = {{\n{}}};\n\n#endif\n",
             self.road.len(),
             self.start,

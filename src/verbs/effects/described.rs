@@ -1,4 +1,4 @@
-//! An effect of the catalogue: what it is, its forms and its parameters.
+//! An effect of the catalogue: its description, its forms and its parameters.
 
 use qcar_dsl::patch::Patch;
 use qcar_dsl::syntax::{EffectParameter, Role, VanishesAt};
@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::table::Table;
 
-/// An effect as its file says it.
+/// An effect as its file describes it.
 #[derive(Serialize)]
 pub struct Described {
     name: String,
@@ -39,7 +39,7 @@ struct Parameter {
 }
 
 impl Described {
-    /// Of an effect in all its forms.
+    /// Describes an effect with all its forms.
     pub fn of(patch: &Patch) -> Described {
         let effect = patch.effect();
         let shared = effect.parameters().into_iter().map(|own| Parameter::of(own, None));
@@ -61,7 +61,7 @@ impl Described {
         }
     }
 
-    /// For people.
+    /// As text for the terminal.
     pub fn text(&self) -> String {
         let mut text = format!(
             "{}: {}.\nShows: {}.\nSource: {}.\n",

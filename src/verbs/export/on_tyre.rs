@@ -17,7 +17,7 @@ use crate::failure::{Failure, flag};
 use crate::parameters::Beside;
 use crate::roads::Asked;
 
-/// Most points of a profile, which become text of a C source.
+/// Largest number of points of a profile, which are written as C source text.
 const POINTS: usize = 200_000;
 
 /// A model at rest before a road, on the tyre of the vehicle in `params` (a campaign or parameter file).

@@ -139,7 +139,7 @@ pub(super) fn quantity_of(unit: &str) -> Option<Quantity> {
         .find(|own| in_si(own.unit()).is_some_and(|si| si.dimension == dimension))
 }
 
-/// A place of the model by its own name or by a common name, and whether it is the road.
+/// A place of the model by its own name or by a common name, and true if it is the road.
 fn location(words: &[String], about: &About) -> Option<(String, bool)> {
     let roads = about.excitations.iter().map(|own| (&own.name, own.road));
     let masses = about.states.iter().filter(|state| state.kind == StateKind::Velocity);

@@ -85,12 +85,12 @@ pub(super) struct Driven {
 }
 
 impl Driven {
-    /// Whether a channel is taken for a pad.
+    /// True if the channel is assumed to be that of a pad.
     pub fn is_in(signal: &Signal, about: &About) -> bool {
         Guess::of(signal, about).is_ok_and(|guess| guess.drives)
     }
 
-    /// Of a channel that is taken for a pad and has a clock.
+    /// The motion of a channel that is assumed to be that of a pad and has times.
     pub fn of(signal: &Signal, about: &About) -> Option<Self> {
         let guess = Guess::of(signal, about).ok().filter(|guess| guess.drives)?;
         let (rate, start) = (signal.time.rate()?, signal.time.start()?);

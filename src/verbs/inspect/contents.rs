@@ -75,7 +75,7 @@ impl<T> Contents<T> {
         if listed
             .signals
             .iter()
-            .all(|signal| signal.samples.made_summary().is_some())
+            .all(|signal| signal.samples.stored_summary().is_some())
         {
             return Self::of_summarised(listed, at_a_time, read, look);
         }

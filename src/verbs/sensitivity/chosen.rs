@@ -11,7 +11,7 @@ use qcar_runtime::spelling::{self, nearest};
 use crate::failure::flag;
 use crate::verbs::each_once;
 
-/// True of a name that a pattern means, in which each `*` stands for any letters.
+/// True if a name matches a pattern, in which each `*` means any characters.
 pub(crate) fn fits(pattern: &str, name: &str) -> bool {
     let Some((prefix, rest)) = pattern.split_once('*') else {
         return pattern == name;
@@ -27,10 +27,10 @@ pub(crate) fn fits(pattern: &str, name: &str) -> bool {
     })
 }
 
-/// Leaves the courses that names mean; all where there are no names.
+/// Keeps the courses that match the names; all without names.
 ///
 /// # Errors
-/// Every name that no course has.
+/// Fails with every name that matches no course.
 pub(crate) fn keep_runs(courses: &mut Vec<Course>, names: &[String]) -> Result<(), InputError> {
     let known: Vec<&str> = courses.iter().map(|course| course.name.as_str()).collect();
     let lost = names.iter().filter(|name| !known.iter().any(|own| fits(name, own)));
@@ -48,10 +48,10 @@ pub(crate) fn keep_runs(courses: &mut Vec<Course>, names: &[String]) -> Result<(
     InputError::unless_empty(problems, Some(()))
 }
 
-/// The metrics that names mean, in the order of the names; a name may hold a `*`.
+/// The metrics that match the names, in the order of the names; a name may contain `*`.
 ///
 /// # Errors
-/// Every name that the model has nothing for.
+/// Fails with every name that matches no metric of the model.
 pub(crate) fn metrics(ground: &Ground<'_>, names: &[String]) -> Result<Vec<usize>, InputError> {
     let (mut chosen, mut problems) = (Vec::new(), Vec::new());
     for name in names {
@@ -68,7 +68,7 @@ pub(crate) fn metrics(ground: &Ground<'_>, names: &[String]) -> Result<Vec<usize
     InputError::unless_empty(problems, Some(chosen))
 }
 
-/// What to say of a metric that none of the runs has a value of.
+/// The problem of a metric that has no value on any of the runs.
 fn unread(ground: &Ground<'_>, metric: usize) -> Option<Problem> {
     let found = format!("`{}`, on runs without an obstacle", ground.metrics()[metric].name);
     let remedy = "choose such a run with --runs, or leave the metric out";
@@ -84,7 +84,7 @@ fn places<'a>(metrics: &'a [Metric], pattern: &'a str) -> impl Iterator<Item = u
         .map(|(place, _)| place)
 }
 
-/// What to say of a name that is no metric of the model.
+/// The problem of a name that is no metric of the model.
 pub(crate) fn unknown(ground: &Ground<'_>, name: &str, problem: impl Fn(&str, &str, &str) -> Problem) -> Problem {
     let expected = format!("a metric of model `{}`", ground.about().name);
     let known = || ground.metrics().iter().map(|metric| &*metric.name);
@@ -111,7 +111,7 @@ pub(crate) fn unknown(ground: &Ground<'_>, name: &str, problem: impl Fn(&str, &s
     problem(&format!("`{name}`"), &expected, &remedy)
 }
 
-/// The metrics without a choice: those of wheel and body, the tyre's load, the travel, and the modes.
+/// The default metrics: those of wheel and body, the load of the tyre, the travel, and the modes.
 pub(crate) fn usual(ground: &Ground<'_>, names: &RoleNames) -> Vec<usize> {
     let roles = Roles::of(ground.about(), names).ok();
     let body = roles.as_ref().and_then(|roles| Some(roles.on_rig().ok()?.body));
@@ -132,10 +132,11 @@ pub(crate) fn usual(ground: &Ground<'_>, names: &RoleNames) -> Vec<usize> {
         .collect()
 }
 
-/// Parameters by name, each once and each that leads its ties; where there are no names, all that the model does not call known.
+/// Parameters by name, without duplicates and without tied ones; without names, all that the model does not declare
+/// `known`.
 ///
 /// # Errors
-/// Every name that is no parameter of the model, or that takes its value from another.
+/// Fails with every name that is no parameter of the model or is that of a tied parameter.
 pub(crate) fn parameters(about: &About, values: &Values, names: &[String]) -> Result<Vec<usize>, InputError> {
     if names.is_empty() {
         let all = about.parameters.iter().enumerate();
@@ -157,10 +158,10 @@ pub(crate) fn parameters(about: &About, values: &Values, names: &[String]) -> Re
     InputError::unless_empty(problems, Some(each_once(chosen)))
 }
 
-/// A parameter that leads its ties.
+/// A parameter that is not tied to another.
 ///
 /// # Errors
-/// A name that is no parameter of the model, or of one that takes its value from another.
+/// Fails if the name is no parameter of the model or is that of a tied parameter.
 pub(crate) fn parameter(
     about: &About,
     values: &Values,

@@ -10,16 +10,16 @@ use qcar_runtime::sensitivity::{Chance, Doubt, size};
 use super::subject::Subject;
 use crate::failure::flag;
 
-/// All that is said of it; parameters by their places, each of which leads its ties.
+/// The stated uncertainty. Parameters are given by their positions; none is tied to another.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Doubts {
-    /// Whether the errors of the fit count.
+    /// True if the errors of the fit are included.
     pub fit: bool,
-    /// Parts that lie evenly within so much of their values.
+    /// Parameters with their relative tolerances: uniform distributions.
     pub tolerances: BTreeMap<usize, f64>,
-    /// What changes by so much of its value per kelvin.
+    /// Parameters with their relative changes per kelvin.
     pub per_kelvin: BTreeMap<usize, f64>,
-    /// How far the temperature is from that for which the values hold, K.
+    /// Range of the temperature relative to that of the values, K.
     pub temperatures: [f64; 2],
 }
 
@@ -40,11 +40,11 @@ impl FromStr for Temperatures {
     }
 }
 
-/// A smaller part of a parameter is no value that a part can have.
+/// Smallest value of a drawn parameter relative to its estimate; smaller values are not physical.
 const LEAST: f64 = 1e-3;
 
 impl Doubts {
-    /// The parameters that are in doubt.
+    /// The uncertain parameters.
     pub fn places(&self, subject: &Subject) -> Vec<usize> {
         let all = 0..subject.values.as_slice().len();
         all.filter(|place| {
@@ -55,13 +55,13 @@ impl Doubts {
         .collect()
     }
 
-    /// Those of which the fit has errors.
+    /// The parameters with a standard error of the fit.
     pub fn fitted(&self, subject: &Subject) -> Vec<usize> {
         let all = 0..subject.values.as_slice().len();
         all.filter(|place| self.error(subject, *place) > 0.0).collect()
     }
 
-    /// The standard error of a parameter by the fit; zero where none is known.
+    /// The standard error of a parameter from the fit; zero if it is unknown.
     fn error(&self, subject: &Subject, place: usize) -> f64 {
         let leads = subject.values.leader(place) == place;
         let name = &subject.model.about().parameters[place].name;
@@ -74,7 +74,7 @@ impl Doubts {
         subject.errors.correlations.get(&(a, b)).copied().unwrap_or(0.0)
     }
 
-    /// To first order, of these parameters; none where nothing is said of them.
+    /// The uncertainty of these parameters to first order; `None` if all are certain.
     pub fn doubt(&self, subject: &Subject, places: &[usize]) -> Option<Doubt> {
         let of = |known: &BTreeMap<usize, f64>| -> Vec<f64> {
             places
@@ -96,10 +96,10 @@ impl Doubts {
         Some(doubt)
     }
 
-    /// As draws.
+    /// The uncertainty as random draws.
     ///
     /// # Errors
-    /// A fit whose correlations contradict each other.
+    /// Fails if the correlations of the fit contradict each other.
     pub fn chance(&self, subject: &Subject) -> Result<Chance, InputError> {
         let places = self.fitted(subject);
         let fit = match places.is_empty() {
@@ -140,7 +140,7 @@ fn pairs_of(known: &BTreeMap<usize, f64>) -> Vec<(usize, f64)> {
     known.iter().map(|(place, part)| (*place, *part)).collect()
 }
 
-/// What is above zero stays so.
+/// Keeps positive values positive.
 fn range(value: f64) -> (f64, f64) {
     match value {
         value if value > 0.0 => (LEAST * value, f64::INFINITY),

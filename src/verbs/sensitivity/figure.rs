@@ -1,4 +1,4 @@
-//! Sensitivities drawn: a tornado of each metric, and a heat map of all.
+//! Figures of sensitivities: a tornado plot for each metric, and a heat map of all.
 
 use std::fmt::Write;
 
@@ -6,18 +6,18 @@ use super::gather::{MetricResult, Sensitivity};
 use super::render::by_weight;
 use crate::figure::{CSS, escaped, text};
 
-/// Bars of a tornado.
+/// Number of bars of a tornado plot.
 const BARS: usize = 8;
 const PANEL: [f64; 2] = [330.0, 210.0];
 const COLUMNS: usize = 3;
 const LABELS: f64 = 110.0;
 const ROW: f64 = 20.0;
-/// Of a cell of the heat map.
+/// Size of a cell of the heat map.
 const CELL: [f64; 2] = [64.0, 20.0];
-/// Room for the names of metrics, which stand on end.
+/// Height for the names of metrics, which are vertical.
 const HEAD: f64 = 170.0;
 
-/// The drawing.
+/// The figure as SVG.
 pub(super) fn svg(of: &Sensitivity) -> String {
     let rows = of.metrics.len().div_ceil(COLUMNS) as f64;
     let order = by_weight(of);
@@ -46,7 +46,7 @@ pub(super) fn svg(of: &Sensitivity) -> String {
     out
 }
 
-/// The parameters that move a metric most, up to the right.
+/// A tornado plot: the parameters with the largest elasticities of a metric.
 fn tornado(out: &mut String, metric: &MetricResult) {
     let mut bars: Vec<&(String, f64)> = metric
         .elasticities
@@ -87,7 +87,7 @@ fn tornado(out: &mut String, metric: &MetricResult) {
     );
 }
 
-/// Parameters down, metrics across, as strong as each is.
+/// A heat map: a row for each parameter, a column for each metric.
 fn heat_map(out: &mut String, of: &Sensitivity, order: &[usize]) {
     for (column, metric) in of.metrics.iter().enumerate() {
         let x = LABELS + 10.0 + CELL[0] * (column as f64 + 0.5);

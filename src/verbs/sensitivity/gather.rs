@@ -1,4 +1,4 @@
-//! Sensitivities as the verb prints them: each metric over all of its runs.
+//! Sensitivities of each metric as means over its runs.
 
 use std::ops::Range;
 
@@ -14,39 +14,39 @@ use super::doubts::Doubts;
 use super::subject::Subject;
 use crate::json::Ordered;
 
-/// What is nearer to zero is what rounding has left of it.
+/// Smaller relative values are rounding errors.
 const ROUNDING: f64 = 1e-9;
 
-/// All that is known.
+/// The result.
 #[derive(Serialize)]
 pub(crate) struct Sensitivity {
     pub subject: String,
     pub model: String,
-    /// Names of the runs that ridden metrics are a mean of.
+    /// Names of the runs over which metrics of rides are means.
     pub runs: Vec<String>,
     pub parameters: Vec<Parameter>,
     pub metrics: Vec<MetricResult>,
-    /// What is odd about the parameters, as sentences.
+    /// Notices on the parameters, as sentences.
     pub notices: Vec<String>,
-    /// Of the Sobol indices, where they were asked for.
+    /// Settings of the Sobol indices, if they were requested.
     pub global: Option<Global>,
 }
 
-/// A parameter that was moved.
+/// A varied parameter.
 #[derive(Serialize)]
 pub(crate) struct Parameter {
     pub name: String,
     pub unit: String,
     pub value: f64,
-    /// Standard error, where a fit knows it.
+    /// Standard error, if it is known from a fit.
     pub stderr: Option<f64>,
-    /// Tolerance of the part, where the user gives it.
+    /// Relative tolerance, if the user gives it.
     pub tolerance: Option<f64>,
-    /// The part of its value by which it changes per kelvin, where the user gives it.
+    /// Relative change per kelvin, if the user gives it.
     pub per_kelvin: Option<f64>,
 }
 
-/// A metric; all that is said of it is said of the mean of its relative values over the runs.
+/// A metric. All sensitivities are those of the mean of its relative values over the runs.
 #[derive(Serialize)]
 pub(crate) struct MetricResult {
     pub name: String,
@@ -54,57 +54,57 @@ pub(crate) struct MetricResult {
     pub doc: String,
     /// Mean over the runs.
     pub value: f64,
-    /// By run.
+    /// Value in each run.
     pub values: Ordered<f64>,
-    /// By parameter: percent of the metric for one percent of the parameter.
+    /// For each parameter, percent of the metric per percent of the parameter.
     pub elasticities: Ordered<f64>,
-    /// The same by run and parameter.
+    /// The same for each run and parameter.
     pub by_run: Ordered<Vec<f64>>,
-    /// How sure it is, where anything is known of the parameters' errors.
+    /// Its uncertainty, if that of any parameter is known.
     pub doubt: Option<Doubted>,
-    /// By parameter.
+    /// Sobol indices for each parameter.
     pub sobol: Option<Ordered<Index>>,
-    /// Mean and standard deviation over the designs of the indices.
+    /// Mean and standard deviation over the designs of the Sobol indices.
     pub spread: Option<[f64; 2]>,
 }
 
-/// How sure a metric is.
+/// Uncertainty of a metric.
 #[derive(Serialize)]
 pub(crate) struct Doubted {
     /// Standard deviation.
     pub deviation: f64,
     /// 95 % of a normal distribution, about the value at the mean temperature.
     pub interval: [f64; 2],
-    /// What the fit, tolerances and the temperature contribute to the variance.
+    /// Shares of the fit, of tolerances and of the temperature in the variance.
     pub sources: Ordered<f64>,
-    /// What each parameter contributes to it: those asked for, then all others of which errors are known.
+    /// Share of each parameter in the variance: the requested ones, then all others with a known uncertainty.
     pub shares: Ordered<f64>,
 }
 
-/// How the indices were found.
+/// Settings of the Sobol indices.
 #[derive(Serialize)]
 pub(crate) struct Global {
-    /// Parameters lie within so much of their value.
+    /// Relative range of each parameter about its value.
     pub spread: f64,
     pub designs: usize,
-    /// Base designs that could not be ridden, and were left out.
+    /// Number of base designs that could not be simulated and were left out.
     pub failed: usize,
 }
 
-/// What to analyse, and how.
+/// Settings of an analysis.
 pub(crate) struct Asked<'a> {
     pub metrics: &'a [usize],
-    /// Places of parameters.
+    /// Positions of the parameters.
     pub parameters: &'a [usize],
     pub doubts: &'a Doubts,
-    /// Designs of the indices, and how far their parameters spread.
+    /// Number of designs of the Sobol indices, seed, and relative range of the parameters.
     pub global: Option<(Plan, f64)>,
 }
 
-/// Looks.
+/// Computes the sensitivities.
 ///
 /// # Errors
-/// What cannot be measured.
+/// Fails if a metric cannot be computed.
 pub(crate) fn gather(
     subject: &Subject,
     ground: &mut Ground<'_>,
@@ -155,15 +155,15 @@ pub(crate) fn gather(
     Ok(found)
 }
 
-/// The parameters that are asked for, and after them all others of which errors are known: what they leave in doubt is so
-/// whoever is asked for.
+/// The requested parameters, then all others with a known uncertainty: they contribute to the uncertainty of a metric
+/// in any case.
 fn moved(subject: &Subject, asked: &Asked<'_>) -> Vec<usize> {
     let others = asked.doubts.places(subject).into_iter();
     let others = others.filter(|place| !asked.parameters.contains(place));
     asked.parameters.iter().copied().chain(others).collect()
 }
 
-/// A metric over the readings in a range of places; elasticities are of the parameters that are shown, what is in doubt by all.
+/// A metric from a range of readings. Elasticities are those of the shown parameters; the uncertainty is due to all.
 fn result(
     ground: &Ground<'_>,
     local: &Elasticities,
@@ -201,7 +201,7 @@ fn result(
     }
 }
 
-/// The value, or zero where rounding has left nothing else.
+/// The value; zero if it is a rounding error.
 pub(crate) fn rounded(value: f64) -> f64 {
     if value.abs() < ROUNDING { 0.0 } else { value }
 }
@@ -218,9 +218,9 @@ fn parameters(subject: &Subject, asked: &Asked<'_>, names: &[String], ground: &G
     asked.parameters.iter().zip(names).map(own).collect()
 }
 
-/// Of a metric with a value, from what is not known of it.
+/// The uncertainty of a metric with a value, from its interval.
 pub(crate) fn doubted(value: f64, names: &[String], of: &Interval) -> Doubted {
-    /// Of a normal distribution, 95 % lie within so many standard deviations.
+    /// Number of standard deviations that contain 95 % of a normal distribution.
     const NORMAL: f64 = 1.96;
     let (mean, reach) = (value + of.shift, NORMAL * of.deviation);
     Doubted {
@@ -235,7 +235,7 @@ pub(crate) fn doubted(value: f64, names: &[String], of: &Interval) -> Doubted {
     }
 }
 
-/// Indices of what `relative` gives, for parameters that lie within `spread` of their values.
+/// Sobol indices of the results of `relative`, for parameters within the relative range `spread` of their values.
 fn drawn(
     subject: &Subject,
     asked: &Asked<'_>,
@@ -269,7 +269,7 @@ fn add(to: &mut Sensitivity, own: &Indices, spread: f64) {
     });
 }
 
-/// The mean over its runs of each metric, relative to today.
+/// The mean of each metric over its runs, relative to its present value.
 fn means(values: &[f64], today: &[f64], sizes: &[usize]) -> Vec<f64> {
     let mut first = 0;
     let mean = |&size: &usize| {

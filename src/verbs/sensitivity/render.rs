@@ -6,7 +6,7 @@ use super::gather::{Doubted, MetricResult, Sensitivity};
 use crate::table::{Table, counted, noted, number};
 use crate::units;
 
-/// For people.
+/// As text for the terminal.
 pub(super) fn text(of: &Sensitivity) -> String {
     let mut out = format!("{}: {}\n", of.subject, runs(of));
     out += &noted(&of.notices);
@@ -54,10 +54,10 @@ fn runs(of: &Sensitivity) -> String {
     }
 }
 
-/// Metrics beside each other.
+/// Number of metrics side by side.
 const ACROSS: usize = 8;
 
-/// Parameters down, metrics across, in as many tables as these take.
+/// Tables with a row for each parameter and a column for each metric, as many as the metrics need.
 fn tables(of: &Sensitivity, cell: impl Fn(&MetricResult, usize) -> String) -> String {
     let order = by_weight(of);
     let table = |metrics: &[MetricResult]| {
@@ -72,7 +72,7 @@ fn tables(of: &Sensitivity, cell: impl Fn(&MetricResult, usize) -> String) -> St
     of.metrics.chunks(ACROSS).map(table).collect::<Vec<_>>().join("\n")
 }
 
-/// Places of the parameters, that which moves any metric most first.
+/// Positions of the parameters, by their largest elasticity of any metric.
 pub(super) fn by_weight(of: &Sensitivity) -> Vec<usize> {
     let weight = |k: usize| {
         of.metrics
@@ -101,7 +101,7 @@ fn values(of: &Sensitivity) -> Table {
     table
 }
 
-/// How far a value may be off, with what its mean differs from it where that is to be seen.
+/// The interval of a value, with the difference of its mean if that is visible.
 pub(crate) fn reach(value: f64, doubt: &Doubted, unit: &str) -> String {
     const SEEN: f64 = 0.02;
     let [low, high] = doubt.interval;

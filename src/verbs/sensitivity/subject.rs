@@ -17,27 +17,27 @@ use crate::verbs::fit::{self, Choices, nonlinear};
 
 /// A model with values on its tyre.
 pub(crate) struct Subject {
-    /// As the user has named it.
+    /// Name as the user gave it.
     pub name: String,
     /// The name or path of its model.
     pub source: String,
-    /// As it runs.
+    /// The model, ready to run.
     pub model: Loaded,
-    /// Of all parameters.
+    /// Values of all parameters.
     pub values: Values,
     /// Masses that a campaign names.
     pub roles: RoleNames,
-    /// Facts of the vehicle that are no parameters of the model.
+    /// Vehicle data that are no parameters of the model.
     pub vehicle: BTreeMap<String, f64>,
-    /// What is odd about its values, as sentences.
+    /// Notices on its values, as sentences.
     pub notes: Vec<String>,
-    /// The tyre and its load, N, where facts of a vehicle say them.
+    /// The tyre and its load, N; `None` without vehicle data.
     pub tyre: Option<(Tyre, f64)>,
     /// The cleat runs of the campaign, else the standard ones; then roads.
     pub courses: Vec<Course>,
-    /// What was measured on the first of them; nothing on the standard ones.
+    /// Measured runs on the first of these courses; none for the standard ones.
     pub measured: Vec<Cleat>,
-    /// How sure the values are.
+    /// Uncertainty of the values.
     pub errors: Errors,
 }
 
@@ -45,19 +45,19 @@ pub(crate) struct Subject {
 #[derive(Default)]
 pub(crate) struct Errors {
     pub deviations: BTreeMap<String, f64>,
-    /// Of pairs in both orders.
+    /// Correlations of pairs, in both orders.
     pub correlations: BTreeMap<(String, String), f64>,
 }
 
-/// What a user gives beside the subject.
+/// Input of the user besides the subject.
 pub(crate) struct Beneath<'a> {
-    /// Start values, facts of the vehicle and cleat runs.
+    /// Campaign with start values, vehicle data and cleat runs.
     pub campaign: Option<&'a Path>,
-    /// Values above those.
+    /// Files with values that take precedence over those.
     pub params: Option<&'a Path>,
-    /// And above those.
+    /// Single values that take precedence over those of files.
     pub set: &'a [Setting],
-    /// Roads beside the cleats.
+    /// Roads in addition to the cleats.
     pub roads: &'a [Asked],
 }
 
@@ -72,10 +72,11 @@ impl Errors {
 }
 
 impl Subject {
-    /// A model by name or path, a campaign's folder, or what a fit has written.
+    /// Reads a subject: a model by name or path, the folder of a campaign, or the results of a fit.
     ///
     /// # Errors
-    /// What cannot be read, compiled, resolved or fitted, an argument that is nothing of that, and roads without a tyre.
+    /// Fails if something cannot be read, compiled, resolved or fitted, if the argument is none of these, or if there
+    /// are roads but no tyre.
     pub fn of(text: &str, beneath: &Beneath<'_>) -> Result<Self, Failure> {
         let mut subject = Self::over_cleats(text, beneath)?;
         if subject.tyre.is_none() && !beneath.roads.is_empty() {
@@ -111,14 +112,14 @@ impl Subject {
         }
     }
 
-    /// Where its metrics are measured.
+    /// The ground on which its metrics are computed.
     pub fn ground(&self) -> Ground<'_> {
         Ground::new(&*self.model, &self.values, &self.roles, self.tyre, self.courses.clone())
             .refusing(|p| self.model.check_inertias(p).err().map(|error| error.to_string()))
     }
 }
 
-/// The `fit.json` that a path means.
+/// The `fit.json` at a path or in a folder.
 fn answer(path: &Path) -> Option<PathBuf> {
     let inside = path.join("fit.json");
     let own = path.extension().is_some_and(|ending| ending == "json") && path.is_file();
@@ -160,7 +161,7 @@ fn of_model(name: &str, model: &str, own: &[PathBuf], beneath: &Beneath<'_>) -> 
     finish((name, source), model, values, facts, campaign, errors)
 }
 
-/// Values of a model from files of which one may be a campaign of another model: of its values, those that the model has.
+/// Values of a model from files. If one is the campaign of another model, values that the model lacks are ignored.
 fn resolved(
     model: &Loaded,
     files: &[PathBuf],
@@ -181,7 +182,8 @@ fn resolved(
     })
 }
 
-/// A campaign: its model fitted to its rig runs, unless the user has values; where it has none, with its start values.
+/// A campaign: its model, fitted to its rig runs unless the user gives values. Without rig runs it has its start
+/// values.
 fn of_campaign(folder: &Path, beneath: &Beneath<'_>) -> Result<Subject, Failure> {
     if beneath.campaign.is_some() {
         let remedy = "leave --campaign out, or name its model as SUBJECT";

@@ -1,4 +1,4 @@
-//! The data of the page: the answer, and the rides of today's axle and of the design beside what was measured.
+//! The data of the report: the result, and the rides of the present axle and of the design, with the measurement.
 
 use qcar_runtime::campaign::{Channel, Quantity};
 use qcar_runtime::metric::{Ground, Trace};
@@ -13,7 +13,7 @@ use crate::report::rounded::curve;
 use crate::verbs::sensitivity::subject::Subject;
 use crate::verbs::simulate::compared::{Pair, alignment};
 
-/// All of it.
+/// The data of the report.
 #[derive(Serialize)]
 pub(super) struct Contents<'a> {
     #[serde(flatten)]
@@ -23,38 +23,38 @@ pub(super) struct Contents<'a> {
     elasticities: &'a [Vec<f64>],
 }
 
-/// A parameter of the model that a parameter of the file moves: `factor` times its value, and `constant`.
+/// A parameter of the model that follows a parameter of the file: `factor` times its value, plus `constant`.
 #[derive(Serialize)]
 struct Moved<'a> {
-    /// The place of that in the file.
+    /// Position of the parameter in the file.
     knob: usize,
     parameter: &'a str,
     factor: f64,
     constant: f64,
 }
 
-/// A run by both axles.
+/// A run with both axles.
 #[derive(Serialize)]
 struct Ride {
     run: String,
-    /// s after the wheel of today's axle feels the obstacle.
+    /// Time after the wheel of the present axle reaches the obstacle, s.
     time: Vec<f64>,
     traces: Vec<Both>,
 }
 
-/// What a mass does, m/s^2.
+/// Accelerations of a mass, m/s^2.
 #[derive(Serialize)]
 struct Both {
     mass: String,
     axis: String,
     today: Vec<f64>,
     design: Vec<f64>,
-    /// Of the car that was tested, aligned with today's axle at the peak of the wheel.
+    /// Measured acceleration, aligned with the present axle at the peak of the wheel.
     measured: Option<Vec<f64>>,
 }
 
 impl<'a> Contents<'a> {
-    /// Drives both axles, today's and the design; what cannot be driven has no ride.
+    /// Simulates the present axle and the design; a ride that fails is left out.
     pub fn of(
         answer: &'a Answer,
         moves: &[Move],
@@ -98,8 +98,8 @@ fn ride((subject, ground): (&Subject, &Ground<'_>), at: usize, [today, design]: 
     })
 }
 
-/// What was measured of each acceleration of a ride, at the samples of the ride; nothing where no sensor was, or where both records
-/// do not lie beside each other.
+/// The measured signal of each acceleration of a ride, at its samples; `None` without a sensor, or if the records
+/// cannot be aligned.
 fn beside(subject: &Subject, cleat: &Cleat, ride: &Trace) -> Vec<Option<Vec<f64>>> {
     let sensors = ride.accelerations.iter().map(|(signal, _)| sensor(cleat, signal));
     let sensors: Vec<Option<&(Channel, Vec<f64>)>> = sensors.collect();
@@ -118,7 +118,7 @@ fn beside(subject: &Subject, cleat: &Cleat, ride: &Trace) -> Vec<Option<Vec<f64>
     let Ok(Some(alignment)) = alignment(subject.model.about(), &subject.roles, &pairs) else {
         return Vec::new();
     };
-    // What lies outside of the record is at rest.
+    // Beyond the ends of the record, the acceleration is zero.
     let shifted = |measured: &[f64]| {
         let at = |sample: usize| usize::try_from(sample as isize - alignment.delay).ok();
         let value = |sample: usize| at(sample).and_then(|sample| measured.get(sample).copied());

@@ -12,17 +12,17 @@ use crate::catalogue;
 use crate::files::read_text;
 use crate::roads;
 
-/// The file as it is written.
+/// The contents of the file.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct File {
-    /// Name or path of a model, folder of a campaign or of a fit's results.
+    /// Name or path of a model, or folder of a campaign or of a fit's results.
     pub subject: Spanned<String>,
-    /// Start values, facts of the vehicle and cleat runs.
+    /// Campaign with start values, vehicle data and cleat runs.
     pub campaign: Option<PathBuf>,
-    /// Values above those.
+    /// Files with values that take precedence over those.
     pub params: Option<PathBuf>,
-    /// Roads beside the cleats.
+    /// Roads in addition to the cleats.
     #[serde(default)]
     pub roads: Vec<Spanned<String>>,
     #[serde(default, rename = "target")]
@@ -43,15 +43,15 @@ pub(super) struct Target {
     pub metric: Spanned<String>,
     pub at_most: Option<Spanned<Amount>>,
     pub at_least: Option<Spanned<Amount>>,
-    /// In place of both.
+    /// An equality, in place of both limits.
     pub equals: Option<Spanned<Amount>>,
-    /// Names of runs, in which a * stands for any letters; all where there are none.
+    /// Names of runs, in which a * means any characters; all runs without names.
     pub runs: Option<Spanned<Vec<String>>>,
-    /// What it costs to miss it by its own size, in place of having to be met.
+    /// For a wish, the cost of missing it by its own size; a target without it must be met.
     pub wish: Option<Spanned<f64>>,
 }
 
-/// A parameter that may move.
+/// A parameter that may change.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Parameter {
@@ -61,23 +61,23 @@ pub(super) struct Parameter {
     pub cost: Option<Spanned<f64>>,
 }
 
-/// What must hold between parameters.
+/// A constraint between parameters.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Coupling {
-    /// This parameter
+    /// Name of the parameter that follows another.
     pub parameter: Option<Spanned<String>>,
-    /// moves with this one,
+    /// Name of the parameter that it follows.
     pub follows: Option<Spanned<String>>,
-    /// times so much, in place of what they have to each other today.
+    /// Factor between them; the present ratio by default.
     pub factor: Option<f64>,
-    /// Or the sum of these, each times a number,
+    /// Parameters of a sum with their factors.
     pub sum: Option<Spanned<BTreeMap<String, f64>>>,
-    /// is at most so much, SI.
+    /// Largest value of the sum, SI.
     pub at_most: Option<f64>,
 }
 
-/// Metrics of which none can be bettered alone.
+/// The metrics of the Pareto front.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Front {
@@ -92,28 +92,28 @@ pub(super) struct Front {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Space {
-    /// Of a good design in it.
+    /// Probability of a good design in the box.
     pub probability: Option<Spanned<f64>>,
-    /// Pairs of parameters whose plane is drawn.
+    /// Pairs of parameters for slices through the design space.
     #[serde(default)]
     pub cuts: Vec<Spanned<[String; 2]>>,
 }
 
-/// What is not known of the parameters.
+/// Uncertainty of the parameters.
 #[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Uncertainty {
-    /// Whether the errors of the subject's fit count; they do where it has some.
+    /// True if the errors of the subject's fit are included; by default they are, if it has any.
     pub fit: Option<Spanned<bool>>,
-    /// Parts that lie evenly within so many percent of their values.
+    /// Tolerances: uniform distributions within this percentage of the values.
     #[serde(default)]
     pub tolerances: BTreeMap<String, Spanned<String>>,
-    /// What changes by so many percent of its value per kelvin.
+    /// Changes per kelvin, in percent of the values.
     #[serde(default)]
     pub per_kelvin: BTreeMap<String, Spanned<String>>,
-    /// Kelvin above the temperature for which the values hold.
+    /// Range of the temperature, K above that for which the values hold.
     pub temperature: Option<Spanned<[f64; 2]>>,
-    /// With which each target is to hold at the design.
+    /// Required probability of each target at the design.
     pub probability: Option<Spanned<f64>>,
 }
 
@@ -125,20 +125,21 @@ pub(super) enum Amount {
     Text(String),
 }
 
-/// What an amount is.
+/// The kind of an amount.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Meant {
-    /// In SI.
+    /// A number in SI.
     Value(f64),
-    /// A part of what it is today.
+    /// A fraction of the present value.
     OfToday(f64),
 }
 
 impl Amount {
-    /// Of something in a unit (SI): a number, a quantity of that kind, or percent of today's value.
+    /// The value of an amount of a quantity with an SI unit: a number, a quantity of that kind, or percent of the
+    /// present value.
     ///
     /// # Errors
-    /// What else it could be, in words.
+    /// Fails with the expected form, in words.
     pub fn of(&self, unit: &str) -> Result<Meant, String> {
         match self {
             Amount::Number(value) if value.is_finite() => Ok(Meant::Value(*value)),
@@ -165,7 +166,7 @@ impl Amount {
     }
 }
 
-/// A file with its text, so that problems can say where they are.
+/// A file with its text, so that problems have a position.
 pub(super) struct Read {
     pub path: PathBuf,
     text: String,
@@ -173,10 +174,10 @@ pub(super) struct Read {
 }
 
 impl Read {
-    /// Reads it.
+    /// Reads a file.
     ///
     /// # Errors
-    /// A file that cannot be read, is not TOML, or has unknown keys.
+    /// Fails if the file cannot be read, is not TOML, or has unknown keys.
     pub fn of(path: &Path) -> Result<Self, InputError> {
         let text = read_text(path)?;
         match toml::from_str(&text) {
@@ -201,7 +202,7 @@ impl Read {
         }
     }
 
-    /// A problem at what stands at a span.
+    /// A problem at a position in the text.
     pub fn problem<T>(&self, at: &Spanned<T>, key: &str, found: &str, expected: &str, remedy: &str) -> Problem {
         Problem::new(
             &self.path,
@@ -212,7 +213,7 @@ impl Read {
         )
     }
 
-    /// The subject: a shipped model by name, anything else relative to the folder of the file.
+    /// The subject: the name of a shipped model, or a path relative to the folder of the file.
     pub fn subject(&self) -> String {
         let own = self.file.subject.get_ref();
         let path = self.beside(Path::new(own));
@@ -223,10 +224,10 @@ impl Read {
         }
     }
 
-    /// The roads, whose files are relative to the folder of this one.
+    /// The roads; paths are relative to the folder of the file.
     ///
     /// # Errors
-    /// Every one that is none.
+    /// Fails with every text that is no road.
     pub fn roads(&self) -> Result<Vec<roads::Asked>, InputError> {
         let (mut roads, mut problems) = (Vec::new(), Vec::new());
         for own in &self.file.roads {
@@ -242,7 +243,7 @@ impl Read {
         InputError::unless_empty(problems, Some(roads))
     }
 
-    /// A path as the file means it: relative to its folder.
+    /// A path relative to the folder of the file.
     pub fn beside(&self, path: &Path) -> PathBuf {
         self.path.parent().unwrap_or(Path::new("")).join(path)
     }

@@ -15,22 +15,23 @@ use crate::progress::while_counting;
 use crate::verbs::sensitivity::gather::{Doubted, doubted, rounded};
 use crate::verbs::sensitivity::subject::Subject;
 
-/// All that was found.
+/// The result.
 #[derive(Serialize)]
 pub(super) struct Answer {
     pub subject: String,
     pub model: String,
-    /// Whether the design meets all that must hold.
+    /// True if the design meets all targets and couplings that must hold.
     pub met: bool,
-    /// What the design costs.
+    /// Cost of the design.
     pub cost: f64,
-    /// What is odd about today's values, as sentences.
+    /// Notices on the present values, as sentences.
     pub notices: Vec<String>,
     pub parameters: Vec<Parameter>,
     pub targets: Vec<Target>,
-    /// By metric of the targets.
+    /// Elasticities of each metric of the targets.
     pub sensitivity: Vec<Sensitivity>,
-    /// Of each target, by parameter: percent of its value at the design for one percent of the parameter. Empty where there are no derivatives.
+    /// For each target and parameter, percent of its value at the design per percent of the parameter. Empty without
+    /// derivatives.
     #[serde(skip)]
     pub elasticities: Vec<Vec<f64>>,
     pub front: Option<FrontAnswer>,
@@ -38,18 +39,18 @@ pub(super) struct Answer {
     pub uncertainty: Option<Sureness>,
 }
 
-/// A parameter that may move.
+/// A parameter that may change.
 #[derive(Serialize)]
 pub(super) struct Parameter {
     pub name: String,
     pub unit: String,
     pub range: [f64; 2],
     pub today: f64,
-    /// In the design that was found.
+    /// Value in the design.
     pub design: f64,
-    /// In the solution space.
+    /// Interval in the solution space.
     pub interval: Option<[f64; 2]>,
-    /// Whether the design stands at an end of the range.
+    /// True if the design is at an end of the range.
     pub at_bound: Option<&'static str>,
 }
 
@@ -62,29 +63,29 @@ pub(super) struct Target {
     /// `at_most` or `at_least`.
     pub sense: &'static str,
     pub limit: f64,
-    /// What it costs to miss it by its own size, of a wish.
+    /// For a wish, the cost of missing it by its own size.
     pub wish: Option<f64>,
     pub today: f64,
     pub design: f64,
     pub met: bool,
-    /// By how much the design is beyond it, over the limit; below zero inside.
+    /// Violation by the design, relative to the limit; negative if it is met.
     pub excess: f64,
-    /// By how much the cost falls for a limit that is looser by its own size; where not all is met, how much of what stands
-    /// in the way it is.
+    /// Decrease of the cost if the limit were looser by its own size. If not all targets are met: the share of this
+    /// target in the conflict.
     pub multiplier: f64,
-    /// How sure the design's value is, where something of the parameters is not known,
+    /// Uncertainty of the design's value, if parameters are uncertain.
     pub doubt: Option<Doubted>,
-    /// and the share of draws in which the design meets it.
+    /// Share of draws in which the design meets the target.
     pub holds: Option<f64>,
     /// Share of the designs in the solution space that meet it.
     pub in_space: Option<f64>,
 }
 
-/// What a metric depends on at the design, mean over the targets that name it.
+/// Elasticities of a metric at the design, as means over its targets.
 #[derive(Serialize)]
 pub(super) struct Sensitivity {
     pub metric: String,
-    /// By parameter: percent of the metric for one percent of it.
+    /// For each parameter, percent of the metric per percent of the parameter.
     pub elasticities: Ordered<f64>,
 }
 
@@ -118,19 +119,19 @@ pub(super) struct FrontPoint {
 /// The box.
 #[derive(Serialize)]
 pub(super) struct SpaceAnswer {
-    /// That was asked for.
+    /// Required probability.
     pub wanted: f64,
     /// Share of good designs among those that judged it.
     pub probability: f64,
-    /// At 95 % confidence no lower than this.
+    /// Lower bound of the probability with 95 % confidence.
     pub at_least: f64,
-    /// The part of all designs in range that it has.
+    /// Its volume, relative to that of the whole ranges.
     pub volume: f64,
     pub evaluated: usize,
     pub cuts: Vec<CutAnswer>,
 }
 
-/// A plane of two parameters.
+/// A slice in the plane of two parameters.
 #[derive(Serialize)]
 pub(super) struct CutAnswer {
     pub parameters: [String; 2],
@@ -138,7 +139,7 @@ pub(super) struct CutAnswer {
     pub dots: Vec<(f64, f64, Option<String>)>,
 }
 
-/// Designs that are drawn in a plane.
+/// Number of designs in a slice.
 const DOTS: usize = 250;
 
 /// Searches for a design and, if requested, a front and a box. `None` if no design can be simulated.

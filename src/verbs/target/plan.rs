@@ -1,4 +1,4 @@
-//! From the file to a task: names become places, texts become numbers in SI.
+//! From the file to a task: names become positions, texts become numbers in SI.
 
 // The parameters that may change.
 mod knobs;
@@ -25,27 +25,27 @@ use crate::verbs::sensitivity::refused;
 use crate::verbs::sensitivity::subject::Subject;
 use limits::Sought;
 
-/// All that a task is made of.
+/// A task with the names and units of its parts.
 pub(super) struct Plan {
     pub knobs: Vec<Knob>,
-    /// Unit of each.
+    /// Unit of each knob.
     pub units: Vec<String>,
     pub moves: Vec<Move>,
     pub limits: Vec<Limit>,
     pub couplings: Vec<Coupling>,
-    /// What each limit and, after them, each coupling is.
+    /// Description of each limit, then of each coupling.
     pub wanted: Vec<Wanted>,
     /// Results that are means of readings over the runs.
     pub means: Vec<Vec<usize>>,
     /// Metrics of the front with their results.
     pub aims: Vec<Aim>,
-    /// Values of all results today.
+    /// Present values of all results.
     pub today: Vec<f64>,
     pub probability: f64,
     pub cuts: Vec<[usize; 2]>,
     pub generations: usize,
     pub doubts: Doubts,
-    /// With which probability each target is to hold at the design, where the file says one.
+    /// Required probability of each target at the design, if the file states one.
     pub sure: Option<f64>,
 }
 
@@ -53,7 +53,7 @@ pub(super) struct Plan {
 pub(super) struct Wanted {
     /// `body_x.peak`, or the coupling.
     pub metric: String,
-    /// Of what is ridden.
+    /// Name of the run, for a metric of rides.
     pub run: Option<String>,
     pub unit: String,
 }
@@ -66,7 +66,7 @@ pub(super) struct Aim {
     pub sense: Sense,
 }
 
-/// Whoever reads the file, and what was wrong so far.
+/// The reader of the file, with the problems so far.
 struct Planner<'a, 'g> {
     read: &'a Read,
     subject: &'a Subject,
@@ -75,10 +75,10 @@ struct Planner<'a, 'g> {
 }
 
 impl Plan {
-    /// Reads what the file wants of a subject.
+    /// Reads the task of a file for its subject.
     ///
     /// # Errors
-    /// All problems of the file together; metrics that cannot be measured today.
+    /// Fails with all problems of the file, or if a metric cannot be computed for the present axle.
     pub fn of(read: &Read, subject: &Subject, ground: &mut Ground<'_>) -> Result<Self, Failure> {
         let mut planner = Planner {
             read,
@@ -142,7 +142,8 @@ impl Plan {
     }
 }
 
-/// Makes the ground measure all that is sought, each once; for each metric of the front the places of its readings.
+/// Sets the readings of the ground without duplicates. Returns the positions of the readings of each metric of the
+/// front.
 fn choose(ground: &mut Ground<'_>, sought: &[Sought<'_>], fronts: &[(usize, Sense)]) -> Vec<Vec<usize>> {
     let mut readings: Vec<Reading> = Vec::new();
     let mut place = |reading: &Reading| {

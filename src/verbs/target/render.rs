@@ -1,4 +1,4 @@
-//! An answer as text.
+//! The result as text.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -13,7 +13,7 @@ use crate::table::{Table, counted, noted, number, or_dash};
 use crate::units;
 use crate::verbs::sensitivity::render::reach;
 
-/// For people.
+/// As text for the terminal.
 pub(super) fn text(of: &Answer) -> String {
     let mut out = format!("{} ({})\n", of.subject, of.model);
     out += &noted(&of.notices);
@@ -68,7 +68,7 @@ fn verdict(of: &Answer) -> String {
     out
 }
 
-/// How often the design meets its targets when parameters turn out as they may.
+/// How often the design meets its targets with uncertain parameters.
 fn sureness(of: &Sureness) -> String {
     let words = of.parameters.0.iter().filter(|(_, names)| !names.is_empty());
     let words: Vec<String> = words
@@ -166,7 +166,7 @@ fn space_words(of: &SpaceAnswer) -> String {
     judged + if of.at_least < of.wanted { short } else { "" }
 }
 
-/// Rows of the front that are printed.
+/// Largest number of printed rows of the front.
 const ROWS: usize = 12;
 
 fn front_words(of: &Answer, front: &FrontAnswer) -> String {
@@ -201,7 +201,7 @@ fn front_words(of: &Answer, front: &FrontAnswer) -> String {
     )
 }
 
-/// A parameter file as `--params` takes it, with facts of the vehicle beside the values.
+/// A parameter file for `--params`, with the values and the vehicle data.
 pub(super) fn parameter_file(about: &About, design: &Values, vehicle: &BTreeMap<String, f64>) -> String {
     let mut out = format!("# {}: the design that meets its targets\n\n[parameters]\n", about.name);
     for (place, (own, value)) in about.parameters.iter().zip(design.as_slice()).enumerate() {

@@ -10,28 +10,29 @@ use crate::json::Ordered;
 use crate::progress::while_counting;
 use crate::verbs::sensitivity::subject::Subject;
 
-/// Draws that say how often targets hold.
+/// Number of draws for the probability of targets.
 const DRAWS: usize = 200;
-/// The design and the margins of its limits are found in turn, so often at most, until margins change by less than this part.
+/// Design and margins are computed alternately: the largest number of rounds, and the relative change of the margins
+/// that ends them.
 const TURNS: usize = 4;
 const SETTLED: f64 = 0.02;
 
-/// What is not known of the parameters, and what that means for the design.
+/// Uncertainty of the parameters, and of the results of the design.
 #[derive(Serialize)]
 pub(super) struct Sureness {
-    /// With which probability each target was to hold, where the file says one.
+    /// Required probability of each target, if the file states one.
     pub wanted: Option<f64>,
-    /// The share of draws in which all targets hold that must.
+    /// Share of draws in which all targets that must hold are met.
     pub all: f64,
     pub draws: usize,
-    /// In doubt, by source.
+    /// Uncertain parameters by source.
     pub parameters: Ordered<Vec<String>>,
-    /// Of each limit the share of draws in which it holds.
+    /// For each limit, the share of draws in which it is met.
     #[serde(skip)]
     pub each: Vec<f64>,
 }
 
-/// The results of a design with what is not known of them; none where nothing is in doubt.
+/// The uncertainty of the results of a design; `None` if all parameters are certain.
 pub(super) fn intervals(
     subject: &Subject,
     (ground, axle): (&Ground<'_>, &Axle<'_>),
@@ -46,8 +47,9 @@ pub(super) fn intervals(
     Some(found.slopes.iter().map(|slopes| doubt.of(slopes)).collect())
 }
 
-/// The design of least cost whose targets each hold with a probability: the margins of limits are those that draws about the last design
-/// need, and so on (after Du and Chen, J. Mech. Des. 126, 2004, who find them to first order).
+/// The design of least cost at which each target holds with a required probability. The margins of the limits follow
+/// from draws about the last design, repeatedly (after Du and Chen, J. Mech. Des. 126, 2004, who compute them to first
+/// order).
 pub(super) fn design(task: &mut Task<'_>, axle: &Axle<'_>, seed: u64, probability: Option<f64>) -> Option<Found> {
     let searched = |task: &Task<'_>| {
         while_counting("searching the design of lowest cost: step".into(), |on_progress| {
@@ -67,7 +69,8 @@ pub(super) fn design(task: &mut Task<'_>, axle: &Axle<'_>, seed: u64, probabilit
     Some(found)
 }
 
-/// Gives each limit the margin with which it holds with a probability about a design; false where that changes little.
+/// Sets the margin of each limit so that it holds with the required probability about a design. Returns false if the
+/// margins hardly change.
 pub(super) fn keep_away(task: &mut Task<'_>, axle: &Axle<'_>, about: &Found, probability: f64) -> bool {
     if axle.is_certain() {
         return false;
@@ -89,14 +92,14 @@ pub(super) fn keep_away(task: &mut Task<'_>, axle: &Axle<'_>, about: &Found, pro
     changes
 }
 
-/// Results of a design as they may turn out, from the draw of a number on.
+/// Random results of a design, from the draw with this number on.
 fn draws(axle: &Axle<'_>, design: &[f64], first: u64) -> Vec<Option<Vec<f64>>> {
     let numbers = first..first + DRAWS as u64;
     let draws: Vec<(Vec<f64>, u64)> = numbers.map(|number| (design.to_vec(), number)).collect();
     axle.drawn_of_all(&draws)
 }
 
-/// How often targets hold at a design.
+/// Share of draws in which targets hold at a design.
 pub(super) fn sureness(
     subject: &Subject,
     plan: &Plan,
@@ -109,7 +112,7 @@ pub(super) fn sureness(
     }
     let real = task.without_margins();
     let excess = |values: Option<Vec<f64>>| Some(real.excesses(design, &values?));
-    // Others than those that the margins are of.
+    // Draws other than those for the margins.
     let drawn: Vec<_> = draws(axle, design, DRAWS as u64).into_iter().map(excess).collect();
     let share = |holds: &dyn Fn(&Vec<f64>) -> bool| {
         drawn.iter().filter(|own| own.as_ref().is_some_and(holds)).count() as f64 / DRAWS as f64

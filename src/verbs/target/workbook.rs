@@ -1,4 +1,4 @@
-//! An answer as a workbook: targets, parameters, and the designs of the front.
+//! The result as a workbook: targets, parameters, and the designs of the front.
 
 use std::path::Path;
 
@@ -11,10 +11,10 @@ use crate::spreadsheet::{Cell, filled, table};
 use crate::units;
 use crate::verbs::fit::workbook::FILE;
 
-/// Writes it into a folder.
+/// Writes the workbook into a folder.
 ///
 /// # Errors
-/// A folder that cannot be written to.
+/// Fails if the folder cannot be written to.
 pub(super) fn write(of: &Answer, folder: &Path) -> Result<(), InputError> {
     let bytes = filled(&folder.join(FILE), |workbook| {
         targets(workbook, of)?;
@@ -64,7 +64,7 @@ fn targets(workbook: &mut Workbook, of: &Answer) -> Result<(), XlsxError> {
     table(workbook, "Targets", &headings.map(String::from), rows).map(drop)
 }
 
-/// An end of what the design's value may be.
+/// An end of the interval of the design's value.
 fn end(of: &Target, side: usize) -> Cell {
     let ends = of.doubt.as_ref().map(|doubt| doubt.interval[side]);
     Cell::Number(ends.map(|value| units::value(value, &of.unit)))

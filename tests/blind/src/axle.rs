@@ -3,18 +3,18 @@
 use crate::hardware::Hardware;
 use crate::random::Random;
 
-/// Which parts the real axle has.
+/// The parts that the simulated axle has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
-    /// The damper's upper end is a mass on a bushing.
+    /// The damper's upper end is a mass on a bushing (the top mount).
     pub top_mount: bool,
     /// A sub-frame that carries arms, spring and damper through motion ratios.
     pub subframe: bool,
-    /// A powertrain.
+    /// A powertrain mass.
     pub powertrain: Mount,
 }
 
-/// What carries the powertrain.
+/// The mass that carries the powertrain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mount {
     None,
@@ -22,7 +22,7 @@ pub enum Mount {
     Subframe,
 }
 
-/// True values of one corner, SI. Values of absent parts are unused.
+/// True parameter values of one corner, SI units. Values of absent parts are unused.
 #[derive(Clone, Copy, Debug)]
 pub struct Axle {
     pub layout: Layout,
@@ -59,7 +59,7 @@ pub struct Axle {
 pub const GRAVITY: f64 = 9.81;
 
 impl Axle {
-    /// Plausible true values.
+    /// Plausible true values, drawn by the seed.
     pub fn draw(layout: Layout, seed: u64) -> Self {
         let mut random = Random::new(seed, "axle");
         let mut around = |value: f64, spread: f64| value * random.uniform(1.0 - spread, 1.0 + spread);
@@ -104,7 +104,8 @@ impl Axle {
         }
     }
 
-    /// The other side of the car: every rate and mass of its own, within 1 to 2 % where the hardware does not say more.
+    /// The corner on the other side of the car: each rate and mass differs by 1 to 2 %, or by more if the hardware
+    /// flaws say so.
     pub fn other_side(&self, seed: u64, hardware: &Hardware) -> Self {
         let mut random = Random::new(seed, "asymmetry");
         let mut uneven = hardware.sides();

@@ -1,20 +1,21 @@
 //! The calibration curve of a sensor: a gain that changes smoothly with frequency, and the phase that belongs to it.
 //!
-//! It is made of shelves `(1 + s/ω_z) / (1 + s/ω_p)`. They are of minimum phase, so the phase is the one that Bode's relation
-//! gives for the gain (Bode, H. W.: Network analysis and feedback amplifier design, 1945, chapter 14).
+//! It is a product of shelving filters `(1 + s/ω_z) / (1 + s/ω_p)`. They have minimum phase, so Bode's relation gives
+//! the phase from the gain (Bode, H. W.: Network analysis and feedback amplifier design, 1945, chapter 14).
 
 use std::f64::consts::TAU;
 
 use crate::random::Random;
 
-/// Band in which the curve is held to its size, Hz.
+/// Band in which the curve keeps within its size, Hz.
 const BAND: (f64, f64) = (0.5, 30.0);
-/// Points of the band that are looked at.
+/// Number of frequencies in the band at which the gain is checked.
 const POINTS: i32 = 100;
 
 /// A calibration curve.
 pub struct Curve {
-    /// Middle frequency, rad/s, and logarithm of the gain far above over that far below.
+    /// For each shelf: middle frequency, rad/s, and the logarithm of the ratio of the gain far above it to the gain far
+    /// below it.
     shelves: [(f64, f64); 2],
     gain: f64,
 }
@@ -54,7 +55,7 @@ impl Curve {
         self.gain * self.shelves.iter().map(shelf).product::<f64>()
     }
 
-    /// What the sensor makes of a signal that begins at rest (bilinear transform).
+    /// The sensor's output for a signal that starts at rest (bilinear transform).
     pub fn pass(&self, signal: &[f64], rate: f64) -> Vec<f64> {
         let start: Vec<f64> = signal.iter().map(|value| self.gain * value).collect();
         self.shelves.iter().fold(start, |signal, &(middle, step)| {
@@ -77,7 +78,7 @@ mod tests {
 
     const RATE: f64 = 1000.0;
 
-    /// Gain and phase of a curve at a frequency, from what it makes of a sine.
+    /// Gain and phase of a curve at a frequency, from its response to a sine.
     fn response(curve: &Curve, hertz: f64) -> (f64, f64) {
         let wave: Vec<f64> = (0..20_000).map(|i| (TAU * hertz * f64::from(i) / RATE).sin()).collect();
         let seen = curve.pass(&wave, RATE);

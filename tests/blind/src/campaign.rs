@@ -21,14 +21,14 @@ use crate::rig::{self, Motion, RATE, Sweep};
 use crate::road::{Road, SPACING};
 use crate::sensor::Sensor;
 
-/// What a campaign is made from.
+/// All that determines a campaign.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Also the seed of everything random in it, with `seed`.
+    /// Name of the campaign. With `seed` it seeds everything random in it.
     pub name: String,
     /// The model that the engineer starts from.
     pub model: String,
-    /// What the model lacks.
+    /// The hidden effects: in the simulated car, not in the engineer's model.
     pub effects: Vec<Hidden>,
     /// Seed.
     pub seed: u64,
@@ -36,11 +36,11 @@ pub struct Plan {
     pub systematic: f64,
     /// Noise of the rig's accelerometers, m/s².
     pub noise: f64,
-    /// Parameters of the model with the share by which their start value is off; 0 means known.
+    /// Parameters of the model with the relative error of their start value; 0 means known.
     pub parameters: Vec<(String, f64, f64)>,
-    /// Which runs.
+    /// The runs of the campaign.
     pub programme: Programme,
-    /// What car, rig and sensors do that no model knows.
+    /// Flaws of car, rig and sensors that no model describes.
     pub hardware: Hardware,
 }
 
@@ -116,7 +116,7 @@ fn unit(parameter: &str) -> &'static str {
     }
 }
 
-/// Sub-frame and powertrain carry sensors only where the engineer's model has them.
+/// Sub-frame and powertrain carry sensors only if the engineer's model has these masses.
 fn sees(plan: &Plan, parameter: &str) -> bool {
     plan.parameters.iter().any(|(name, ..)| name == parameter)
 }
@@ -182,7 +182,7 @@ fn rig_motion<'a>(motion: &'a Motion, location: &str, side: &str) -> &'a [f64] {
     }
 }
 
-/// Gain errors belong to a sensor and are the same in every run; noise is new in each.
+/// A sensor's gain error is the same in every run; its noise differs from run to run.
 fn record(plan: &Plan, name: &str, location: &str, noise: f64, run: u32, motion: &[f64]) -> Vec<f64> {
     let errors = (plan.systematic, noise);
     let sensor = Sensor::new(name, location, errors, &plan.effects, &plan.hardware, plan.seed);
@@ -255,7 +255,7 @@ fn write_cleats(plan: &Plan, corner: &Corner, folder: &Path, toml: &mut String) 
     Ok(())
 }
 
-/// What a sensor of one axis sees that is a little sensitive to the other. On the rig nothing moves along x.
+/// The signal of a sensor that is slightly sensitive to the other axis. On the rig nothing moves along x.
 fn seen_across(track: &Track, place: (&str, &str), axis: &str, sensitivity: f64) -> Vec<f64> {
     let across = track_motion(track, place, if axis == "z" { "x" } else { "z" });
     let along = track_motion(track, place, axis);
@@ -343,7 +343,8 @@ fn truth(plan: &Plan) -> String {
     text
 }
 
-/// The parameters of the engineer's model of an axle with their true values and how far the start may be off.
+/// The parameters of the engineer's model of an axle, each with its true value and the largest relative error of its
+/// start value.
 pub fn parameters(a: &Axle, model: Layout) -> Vec<(String, f64, f64)> {
     let mut all = vec![("m_wheel", a.m_wheel, 0.3)];
     if model.top_mount {
@@ -381,7 +382,7 @@ pub fn parameters(a: &Axle, model: Layout) -> Vec<(String, f64, f64)> {
         .collect()
 }
 
-/// The parameters that a fit may move.
+/// The parameters that a fit may change.
 pub fn moving(plan: &Plan) -> impl Iterator<Item = &str> {
     plan.parameters
         .iter()
@@ -410,6 +411,6 @@ pub fn value<'a>(a: &'a mut Axle, name: &str) -> &'a mut f64 {
         "c_pwt_x" => &mut a.c_pwt_x,
         "k_tire" => &mut a.k_tire,
         "c_tire" => &mut a.c_tire,
-        _ => panic!("{name} is no parameter that moves"),
+        _ => panic!("{name} is no parameter that a fit changes"),
     }
 }

@@ -1,4 +1,5 @@
-//! The track: a tyre of area contact over a cleat, its overlap summed column by column.
+//! The track: a tyre rolls over a cleat. Its force follows from the area of its overlap with the road, summed column by
+//! column.
 
 use crate::corner::{
     BODY, COORDINATES, Corner, FLEX, PITCH, PWT, Push, SF, STATES, State, WHEEL, X_BODY, X_PWT, X_SF, X_WHEEL,
@@ -19,10 +20,11 @@ struct Overlap {
     shrinkage: [f64; 3],
 }
 
-/// Half a millimetre: the width of a column of the sum.
+/// Width of a column of the sum, m.
 const COLUMN: f64 = 5e-4;
 
-/// The columns that may reach into the ground: the others are above its highest point under the circle.
+/// The columns of the circle that can overlap the ground: all others are above the highest point of the ground under
+/// the circle.
 fn touching(road: &Road, radius: f64, centre: [f64; 2]) -> (usize, usize) {
     let above = centre[1] - road.highest(centre[0] - radius, centre[0] + radius);
     if above >= radius {
@@ -49,7 +51,8 @@ fn overlap(road: &Road, radius: f64, centre: [f64; 2], velocity: [f64; 2]) -> Ov
         let dx = middle(k);
         let right = depth(dx + COLUMN / 2.0);
         let inside = left.max(0.0) + right.max(0.0);
-        // Of the column at an edge only a part is in the ground. Counted as a whole, it would come and go with a jolt.
+        // A column at an edge is only partly in the ground. If it counted in full, the force would jump when it enters
+        // or leaves.
         let share = inside / (left.abs() + right.abs()).max(f64::MIN_POSITIVE);
         left = right;
         if inside <= 0.0 {
@@ -60,7 +63,8 @@ fn overlap(road: &Road, radius: f64, centre: [f64; 2], velocity: [f64; 2]) -> Ov
         sum.area += area;
         sum.moment[0] += area * dx;
         sum.moment[1] += area * (depth / 2.0 - reach);
-        // The arc over this column moves with the wheel: normal speed times arc length is the area it sweeps.
+        // The arc over this column moves with the wheel: normal speed times arc length is the rate at which it sweeps
+        // area.
         let (nx, nz) = (dx / radius, -reach / radius);
         let swept = (velocity[0] * nx + velocity[1] * nz) * share * COLUMN * radius / reach;
         let part = if swept > 0.0 {
@@ -106,12 +110,12 @@ struct Rolling<'a> {
     road: &'a Road,
     law: Law,
     speed: f64,
-    /// How late the logger's trigger comes, s.
+    /// Delay of the logger's trigger, s.
     late: f64,
     drag: f64,
 }
 
-/// What the tyre makes of the road.
+/// The force law between tyre and road.
 enum Law {
     Area,
     Radial(Radial),
@@ -129,11 +133,11 @@ impl Law {
     }
 }
 
-/// Time over which a rate of deflection is taken, s.
+/// Time step of the difference quotient that gives the rate of deflection, s.
 const MOMENT: f64 = 1e-4;
 
 impl Rolling<'_> {
-    /// Force on the ring over and above the static load, and the drag at rest.
+    /// Force on the tyre's ring beyond the static load, and the longitudinal force at rest.
     fn push(&self, t: f64, y: &State) -> Push {
         let t = t + self.late;
         match &self.law {
@@ -143,7 +147,7 @@ impl Rolling<'_> {
         }
     }
 
-    /// Where the middle of the wheel is, and how fast it moves.
+    /// Position and velocity of the wheel's centre.
     fn hub(&self, t: f64, y: &State) -> ([f64; 2], [f64; 2]) {
         let a = self.corner.axle;
         let ring = self.corner.ring();
@@ -172,7 +176,7 @@ impl Rolling<'_> {
         self.along(y, deflection, rate, [-slope * cosine, cosine])
     }
 
-    /// Spring and damper along a direction; the road does not pull.
+    /// Force of a spring and damper along a direction. The road cannot pull.
     fn along(&self, y: &State, deflection: f64, rate: f64, direction: [f64; 2]) -> Push {
         let a = self.corner.axle;
         let spring = self.pressed(deflection.max(0.0)) + self.corner.tire_memory(y);
@@ -214,7 +218,7 @@ impl Rolling<'_> {
         }
     }
 
-    /// Deflection of the tread under the static load, m: the sidewalls have the rest of the tyre's.
+    /// Deflection of the tread under the static load, m. The sidewalls have the rest of the tyre's deflection.
     fn tread_at_rest(&self) -> f64 {
         let a = self.corner.axle;
         let sidewalls = self
@@ -230,7 +234,8 @@ impl Rolling<'_> {
         self.elastic(self.corner.whole_tire(tread, |d| self.elastic(d.max(0.0))))
     }
 
-    /// Static force over the deflection of the whole tyre: through zero and the static point with the rig's slope there.
+    /// Static force, N, over the deflection of the whole tyre. The curve passes through zero and the static point,
+    /// where it has the slope measured on the rig.
     fn elastic(&self, d: f64) -> f64 {
         let a = self.corner.axle;
         let (f0, d0) = (a.static_load(), a.static_tire_def);
@@ -255,12 +260,12 @@ pub struct Track {
     pub pwt_x: Vec<f64>,
 }
 
-/// Looks of the logger a sample.
+/// Readings that the logger averages for each sample.
 const FINER: usize = 4;
-/// Steps of integration between two looks where friction sticks: what sticks follows a fast damper within 0.1 ms.
+/// Integration steps between two readings if friction sticks: a sticking element follows a fast damper within 0.1 ms.
 const STICKING: usize = 4;
 
-/// Drives a corner over a cleat; the record begins `late` s after it should.
+/// Drives a corner over a cleat. The record starts `late` s after the right time.
 pub fn run(corner: &Corner, drive: &CleatRun, late: f64) -> Track {
     let road = &Road::cleat(f64::from(drive.height) / 1000.0);
     let speed = drive.speed / 3.6;
@@ -315,7 +320,7 @@ impl Average {
 }
 
 impl Track {
-    /// The sub-frame's sensors stand at its bushings, `half` before and behind its centre.
+    /// The sub-frame's sensors are at its bushings, `half` m before and behind its centre.
     fn push(&mut self, a: &[f64; COORDINATES], beside_bend: f64, half: f64) {
         self.wheel_z.push(a[WHEEL]);
         self.body_z.push(a[BODY] - beside_bend * a[FLEX]);
@@ -335,7 +340,8 @@ mod tests {
     use crate::axle::{Axle, Layout, Mount};
     use crate::hidden::{Hidden, Laws};
 
-    /// A car whose tyre has a belt stands still before the cleat: its tread carries the static load from the first.
+    /// A car whose tyre has a belt is in equilibrium before the cleat: its tread carries the static load from the
+    /// start.
     #[test]
     fn a_tyre_with_a_belt_carries_its_load_before_the_cleat() {
         let layout = Layout {
@@ -361,7 +367,7 @@ mod tests {
         };
         let rest = rolling.tread_at_rest();
         assert!((rest + axle.static_load() / 700e3 - axle.static_tire_def).abs() < 1e-12);
-        // Columns of the sum, beside the closed segment, are some thousandths of the load.
+        // The sum over columns differs from the closed form of the segment by a few thousandths of the load.
         let above_load = rolling.push(0.1, &[0.0; STATES]).z;
         assert!(above_load.abs() < 0.01 * axle.static_load(), "{above_load} N");
         let mut lower = [0.0; STATES];

@@ -1,15 +1,15 @@
 //! The equations of motion of one corner, in z and x, written out by hand.
 
-// The tyre beyond its point of contact.
+// The tyre's inner parts.
 mod tire;
-// Forces to accelerations.
+// From forces to accelerations.
 mod accelerations;
 
 use crate::axle::{Axle, Mount};
 use crate::hidden::Laws;
 use crate::other_law::{INNER, Other};
 
-/// Vertical coordinates, by their place.
+/// Index of each vertical coordinate.
 pub const WHEEL: usize = 0;
 /// Body above this axle.
 pub const BODY: usize = 1;
@@ -39,19 +39,19 @@ pub const X_SF: usize = 12;
 pub const X_PWT: usize = 13;
 /// See [`X_WHEEL`].
 pub const X_OTHER: usize = 14;
-/// How far the body bends up where the suspension acts.
+/// Upward bending displacement of the body where the suspension acts.
 pub const FLEX: usize = 15;
-/// How many coordinates.
+/// Number of coordinates.
 pub const COORDINATES: usize = 16;
 const FRICTION: usize = 2 * COORDINATES;
 const TM_BRANCH: usize = FRICTION + 1;
 const PWT_BRANCH: usize = FRICTION + 2;
-/// Force of the relaxing branch of the tyre, N, positive in compression.
+/// Index of the force of the tyre's relaxing branch, N, positive in compression.
 const TIRE_BRANCH: usize = FRICTION + 3;
 const LOOP: usize = FRICTION + 4;
-/// Force of a damper that ends in a spring.
+/// Index of the force of a damper in series with a spring, N.
 const SERIES: usize = FRICTION + 5;
-/// States of a law in another form.
+/// Index of the first state of a law in another form.
 const OTHER_LAW: usize = FRICTION + 6;
 /// Length of the state: positions, velocities, inner forces.
 pub const STATES: usize = OTHER_LAW + INNER;
@@ -59,16 +59,16 @@ pub const STATES: usize = OTHER_LAW + INNER;
 /// Positions, velocities, inner forces.
 pub type State = [f64; STATES];
 
-/// A corner with what is hidden in it.
+/// A corner with its hidden effects.
 pub struct Corner<'a> {
     pub axle: &'a Axle,
     pub laws: &'a Laws,
 }
 
-/// Forces on every coordinate, N.
+/// The force on each coordinate, N.
 type Forces = [f64; COORDINATES];
 
-/// What acts from outside: forces on the tyre's ring along z and x, and how fast its deflection grows.
+/// The excitation: forces on the tyre's ring along z and x, N, and the rate of its deflection, m/s.
 #[derive(Clone, Copy, Default)]
 pub struct Push {
     pub z: f64,
@@ -93,22 +93,22 @@ impl Corner<'_> {
         a.m_corner - rest
     }
 
-    /// How much less of the body's bending its sensor sees than the suspension's end of it does.
+    /// The body's bending at the suspension less that at the sensor, as share of the former.
     pub fn sensor_beside_bend(&self) -> f64 {
         self.laws.flexible.map_or(0.0, |mode| 1.0 - mode.at_sensor)
     }
 
-    /// Share of the damping that is left at a share of a run.
+    /// Remaining share of the damping at a time, which is given as a share of the run.
     fn warm(&self, share: f64) -> f64 {
         self.laws.heat.map_or(1.0, |heat| heat.left(share))
     }
 
-    /// Which coordinate touches the road.
+    /// The coordinate in contact with the road.
     pub fn ring(&self) -> usize {
         if self.laws.belt.is_some() { BELT } else { WHEEL }
     }
 
-    /// The derivative of the state at a time, given as a share of the run, under a push of the tyre.
+    /// The derivative of the state under the excitation `push`, at a time that is given as a share of the run.
     pub fn derivative(&self, share: f64, y: &State, push: Push, gravity: bool) -> State {
         let mut f = [0.0; COORDINATES];
         let mut dy = [0.0; STATES];
@@ -195,7 +195,7 @@ impl Corner<'_> {
         }
     }
 
-    /// Resisting force of the spring at the wheel, N, over its stretch in wheel travel.
+    /// Resisting force of the spring at the wheel, N, for an extension given in wheel travel, m.
     fn spring(&self, s: f64) -> f64 {
         let rise = self.laws.rate_increase_at_40mm.unwrap_or(0.0) / 3.0 * (s / 0.04).powi(2);
         let stop = self.laws.bump_stop.map_or(0.0, |b| b.k_stop * (s + b.gap).min(0.0));
@@ -295,7 +295,7 @@ impl Corner<'_> {
         f[carrier] += force;
     }
 
-    /// The x chain: wheel, sub-frame, body, powertrain and the other axle's wheel.
+    /// The longitudinal chain: wheel, sub-frame, body, powertrain and the other axle's wheel.
     fn longitudinal(&self, y: &State, f: &mut Forces) {
         let (a, v) = (self.axle, &y[COORDINATES..]);
         let mut join = |upper: usize, lower: usize, k: f64, c: f64, extra: &dyn Fn(f64) -> f64| {
@@ -319,7 +319,7 @@ impl Corner<'_> {
         }
     }
 
-    /// What the longitudinal bushing adds beyond its linear travel, N.
+    /// Additional force of the longitudinal bushing beyond its linear travel, N.
     pub fn saturation(&self, s: f64) -> f64 {
         let other = self.laws.other.map_or(0.0, |law| law.bushing(self.axle.k_wheel_x, s));
         let Some(law) = self.laws.saturation else { return other };

@@ -1,4 +1,4 @@
-//! A road as a tandem of elliptical cams feels it: another law of the tyre than the area of its overlap.
+//! The effective road of a tandem of elliptical cams: a tyre law that differs from the area of overlap.
 
 use crate::axle::Axle;
 use crate::hardware::Cams;
@@ -25,7 +25,8 @@ impl Felt {
         Self { height, slope }
     }
 
-    /// Effective height, what it grows by per metre, and the slope of the effective plane, at a place.
+    /// Effective height, m, its derivative along the road, and the slope of the effective plane, at a position on the
+    /// road, m.
     pub fn at(&self, x: f64) -> [f64; 3] {
         let place = (x / SPACING).clamp(0.0, (self.height.len() - 2) as f64);
         let (i, part) = (place as usize, place.fract());
@@ -35,7 +36,7 @@ impl Felt {
     }
 }
 
-/// How much higher than on the flat an ellipse rests whose middle is above each point of the road.
+/// The height, m, by which an ellipse rests higher than on flat ground, with its centre above each point of the road.
 fn cam_heights(road: &Road, radius: f64, cams: Cams) -> Vec<f64> {
     let (length, height) = (cams.length * radius, cams.height * radius);
     let reach = (length / SPACING) as usize;
@@ -58,8 +59,8 @@ mod tests {
     use super::*;
     use crate::axle::{Layout, Mount};
 
-    /// An ellipse that comes to a step rests on its edge: by its equation it is as high there as `1 - (1 - u^c)^(1/c)` of
-    /// its half height leaves of the step.
+    /// An ellipse that meets a step rests on the step's edge. By the ellipse's equation the step then lifts it by
+    /// the step's height less `1 - (1 - u^c)^(1/c)` of the ellipse's half height.
     #[test]
     fn a_cam_climbs_a_step_by_its_own_equation() {
         let axle = Axle::draw(

@@ -1,5 +1,5 @@
-//! What measured hardware does and no fitted model knows: flaws of the car, the rig, the sensors and the logger, mild in
-//! size, each with numbers of its own drawn by the seed.
+//! Flaws of the car, the rig, the sensors and the logger that real hardware has and no fitted model describes. They are
+//! mild; the seed draws the numbers of each.
 
 use std::f64::consts::TAU;
 
@@ -8,32 +8,32 @@ use crate::random::Random;
 /// One kind of flaw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flaw {
-    /// The body bends: a mode of its own at 20 to 28 Hz.
+    /// The body bends: it has a mode at 20 to 28 Hz.
     FlexibleBody,
-    /// The actuator resonates and distorts.
+    /// The actuator has a resonance and harmonic distortion.
     Pad,
-    /// An accelerometer sees 2 to 3 % of the other axis.
+    /// An accelerometer has a cross-axis sensitivity of 2 to 3 %.
     CrossAxis,
-    /// The gain of a sensor is a smooth curve within ±2 %, with the phase that belongs to it.
+    /// The gain of a sensor varies smoothly with frequency within ±2 %, with the minimum phase that belongs to it.
     Calibration,
-    /// The damper warms up and loses a few percent.
+    /// The damper warms up and loses a few percent of its damping.
     Heat,
-    /// The zero of a sensor wanders.
+    /// The zero of a sensor drifts.
     Drift,
-    /// The mains are heard.
+    /// Mains hum.
     Hum,
-    /// The trigger of a cleat record comes some ms early or late.
+    /// The trigger of a cleat record is some ms early or late.
     Jitter,
     /// Left and right differ by 3 to 4 %.
     Sides,
-    /// Over a cleat the tyre is one of radial springs.
+    /// Over a cleat the tyre consists of radial springs.
     Tyre,
-    /// Over a cleat the tyre is one of elliptical cams, which feels a cleat earlier. That is more than mild.
+    /// Over a cleat the tyre follows elliptical cams, which reach the cleat earlier. This flaw is not mild.
     Cams,
 }
 
 impl Flaw {
-    /// All that are mild.
+    /// All mild flaws.
     pub const MILD: [Self; 10] = [
         Self::FlexibleBody,
         Self::Pad,
@@ -47,7 +47,7 @@ impl Flaw {
         Self::Tyre,
     ];
 
-    /// A flaw by its name as `{:?}` prints it.
+    /// The flaw with this name, as `{:?}` prints it.
     pub fn named(name: &str) -> Option<Self> {
         Self::MILD
             .into_iter()
@@ -56,7 +56,7 @@ impl Flaw {
     }
 }
 
-/// The flaws of a campaign. A flaw has the same numbers alone as among others.
+/// The flaws of a campaign. The numbers of a flaw do not depend on which others are present.
 #[derive(Clone, Debug, Default)]
 pub struct Hardware {
     seed: u64,
@@ -67,13 +67,14 @@ pub struct Hardware {
 /// dynamics, 2nd ed. 2006, chapters 10 and 17). The shape is 1 where the suspension acts.
 #[derive(Clone, Copy, Debug)]
 pub struct Flexible {
-    /// rad/s.
+    /// Angular frequency, rad/s.
     pub omega: f64,
     /// Share of critical.
     pub damping: f64,
-    /// Effective mass: what would have to hang on the suspension's end of the body to do the same, as share of the body.
+    /// Effective mass: the mass of an attached oscillator with the same effect at the suspension, as share of the
+    /// body's mass.
     pub mass_share: f64,
-    /// The shape where the sensor sits.
+    /// The mode shape at the sensor.
     pub at_sensor: f64,
 }
 
@@ -84,8 +85,8 @@ impl Flexible {
     }
 }
 
-/// A closed-loop actuator of second order whose valve distorts (Merritt, H. E.: Hydraulic control systems, 1967, chapters
-/// 5 and 8).
+/// A closed-loop actuator of second order with a nonlinear valve (Merritt, H. E.: Hydraulic control systems, 1967,
+/// chapters 5 and 8).
 #[derive(Clone, Copy, Debug)]
 pub struct Pad {
     /// Resonance, rad/s.
@@ -105,49 +106,49 @@ impl Pad {
     }
 }
 
-/// Damping lost to heat: it falls towards a steady state, as a body that is heated evenly and cooled in proportion warms
-/// (Dixon, J. C.: The shock absorber handbook, 2nd ed. 2007, section 5.20).
+/// Damping lost to heat. It falls exponentially towards a steady state: the heating is constant and the cooling
+/// proportional to the excess temperature (Dixon, J. C.: The shock absorber handbook, 2nd ed. 2007, section 5.20).
 #[derive(Clone, Copy, Debug)]
 pub struct Heat {
-    /// Share of the damping that is gone at the end of a run.
+    /// Share of the damping that is lost by the end of a run.
     pub loss: f64,
     /// Time constant as share of a run.
     pub time_constant: f64,
 }
 
 impl Heat {
-    /// What is left of the damping at a share of the run.
+    /// Remaining share of the damping at a time, which is given as a share of the run.
     pub fn left(&self, share: f64) -> f64 {
         let rise = |share: f64| 1.0 - (-share / self.time_constant).exp();
         1.0 - self.loss * rise(share) / rise(1.0)
     }
 }
 
-/// Radial springs, each pushed in along its own direction (Davis, D. C.: A radial-spring terrain-enveloping tire model,
-/// Vehicle System Dynamics 4, 1975), with the measured force over deflection on the flat.
+/// Radial springs, each compressed along its own direction (Davis, D. C.: A radial-spring terrain-enveloping tire
+/// model, Vehicle System Dynamics 4, 1975), with the measured force over deflection on flat ground.
 #[derive(Clone, Copy, Debug)]
 pub struct RadialSprings {
-    /// Of the force of a spring over its compression; 1 in the source.
+    /// Exponent of a spring's force over its compression; 1 in the source.
     pub exponent: f64,
 }
 
-/// A tandem of two elliptical cams that feels the road (Schmeitz, A. J. C.: A semi-empirical three-dimensional model of the
-/// pneumatic tyre rolling over arbitrarily uneven road surfaces, TU Delft 2004; Pacejka, H. B.: Tire and vehicle dynamics,
-/// 3rd ed. 2012, section 10.1.6). Lengths are shares of the free radius.
+/// A tandem of two elliptical cams that follows the road (Schmeitz, A. J. C.: A semi-empirical three-dimensional model
+/// of the pneumatic tyre rolling over arbitrarily uneven road surfaces, TU Delft 2004; Pacejka, H. B.: Tire and vehicle
+/// dynamics, 3rd ed. 2012, section 10.1.6). Lengths are shares of the free radius.
 #[derive(Clone, Copy, Debug)]
 pub struct Cams {
-    /// Half the length of an ellipse.
+    /// Half the length of an ellipse, as share of the free radius.
     pub length: f64,
-    /// Half its height.
+    /// Half its height, as share of the free radius.
     pub height: f64,
     /// Its exponent.
     pub order: f64,
-    /// Distance of the two, as share of the length of the contact.
+    /// Distance between the two cams, as share of the contact length.
     pub apart: f64,
 }
 
 impl Hardware {
-    /// The flaws with the numbers of a seed.
+    /// The given flaws, with numbers drawn by a seed.
     pub fn new(seed: u64, flaws: Vec<Flaw>) -> Self {
         Self { seed, flaws }
     }
@@ -157,7 +158,7 @@ impl Hardware {
         self.flaws.contains(&flaw).then(|| Random::new(self.seed, &salt))
     }
 
-    /// The body's mode.
+    /// The body's bending mode.
     pub fn flexible(&self) -> Option<Flexible> {
         self.random(Flaw::FlexibleBody, "").map(|mut random| Flexible {
             omega: TAU * random.uniform(20.0, 28.0),
@@ -176,18 +177,18 @@ impl Hardware {
         })
     }
 
-    /// Sensitivity of a channel to the other axis.
+    /// Cross-axis sensitivity of a channel.
     pub fn cross_axis(&self, channel: &str) -> f64 {
         self.random(Flaw::CrossAxis, channel)
             .map_or(0.0, |mut random| random.uniform(0.02, 0.03) * sign(&mut random))
     }
 
-    /// Largest departure of a channel's gain from 1 and the random numbers that shape its curve.
+    /// Largest deviation of a channel's gain from 1, and the random numbers that shape its curve.
     pub fn calibration(&self, channel: &str) -> Option<(f64, Random)> {
         self.random(Flaw::Calibration, channel).map(|random| (0.02, random))
     }
 
-    /// The damper's warming.
+    /// The damper's loss to heat.
     pub fn heat(&self) -> Option<Heat> {
         self.random(Flaw::Heat, "").map(|mut random| Heat {
             loss: random.uniform(0.02, 0.04),
@@ -195,7 +196,7 @@ impl Hardware {
         })
     }
 
-    /// How far the zero of a channel wanders in half a minute (standard deviation), in units of its noise.
+    /// Standard deviation of the drift of a channel's zero in half a minute, in units of its noise.
     pub fn drift(&self, channel: &str) -> f64 {
         self.random(Flaw::Drift, channel)
             .map_or(0.0, |mut random| random.uniform(1.0, 3.0))
@@ -207,13 +208,13 @@ impl Hardware {
             .map_or(0.0, |mut random| random.uniform(0.5, 1.5))
     }
 
-    /// How late the trigger of a run comes, s.
+    /// Delay of the trigger of a run, s.
     pub fn jitter(&self, run: u32) -> f64 {
         self.random(Flaw::Jitter, &run.to_string())
             .map_or(0.0, |mut random| random.uniform(-3e-3, 3e-3))
     }
 
-    /// Shares by which values of the other side differ.
+    /// Relative differences of the values of the other side.
     pub fn sides(&self) -> Option<impl FnMut() -> f64 + use<>> {
         let mut random = self.random(Flaw::Sides, "")?;
         Some(move || random.uniform(0.03, 0.04) * sign(&mut random))
@@ -237,7 +238,7 @@ impl Hardware {
     }
 }
 
-/// Uniform in one of two ranges.
+/// Uniform in one of two ranges, each equally probable.
 fn any_of(random: &mut Random, ranges: [(f64, f64); 2]) -> f64 {
     let (low, high) = ranges[usize::from(random.uniform(-1.0, 1.0) > 0.0)];
     random.uniform(low, high)

@@ -1,4 +1,4 @@
-//! What a campaign hides: the effects of the catalogue and some outside of it, by name, with hand-written laws.
+//! The hidden effects of a campaign: those of the catalogue and some outside it, by name, with laws written by hand.
 
 use crate::hardware::{Cams, Flexible, Hardware, Heat, RadialSprings};
 use crate::other_law::Other;
@@ -6,19 +6,19 @@ use crate::other_law::Other;
 /// An effect with its true parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hidden {
-    /// A name of the catalogue, or any other.
+    /// A name from the catalogue, or another.
     pub name: String,
     /// Link, mass or sensor location.
     pub at: String,
-    /// Where several forms have one name: `strut` for a friction that acts between body and wheel, `rolling` for a tyre
-    /// effect that is absent on the rig. Empty for the usual one.
+    /// Tells forms of one effect apart: `strut` for a friction that acts between body and wheel, `rolling` for a tyre
+    /// effect that is absent on the rig. Empty for the usual form.
     pub form: String,
-    /// SI.
+    /// Parameter values, SI units.
     pub parameters: Vec<(String, f64)>,
 }
 
 impl Hidden {
-    /// Written short.
+    /// An effect in its usual form.
     pub fn new(name: &str, at: &str, parameters: &[(&str, f64)]) -> Self {
         let parameters = parameters
             .iter()
@@ -32,13 +32,13 @@ impl Hidden {
         }
     }
 
-    /// The same in another form.
+    /// The same effect in another form.
     pub fn form(mut self, form: &str) -> Self {
         self.form = form.to_owned();
         self
     }
 
-    /// A parameter; the caller names one that the effect has.
+    /// The value of a parameter. Panics if the effect has no parameter with this name.
     pub fn get(&self, name: &str) -> f64 {
         let found = self.parameters.iter().find(|(n, _)| n == name);
         found
@@ -47,11 +47,12 @@ impl Hidden {
     }
 }
 
-/// The hidden effects as the equations of motion need them: what is absent is `None`. Names are those of the catalogue.
+/// The hidden effects as the equations of motion need them; an absent effect is `None`. Names are those of the
+/// catalogue.
 #[derive(Clone, Debug, Default)]
 pub struct Laws {
     pub friction: Option<Friction>,
-    /// The friction acts between body and wheel, past the top mount.
+    /// The friction acts between body and wheel; it bypasses the top mount.
     pub friction_past_mount: bool,
     /// Tyre effects are absent on the rig.
     pub rolling_only: bool,
@@ -78,9 +79,9 @@ pub struct Laws {
     pub resonator: Option<Resonator>,
     /// Outside the catalogue: the damper fades by this share from the start of a run to its end.
     pub fade: Option<f64>,
-    /// Outside the catalogue: a damper force c₂ v|v| on top, N s²/m².
+    /// Outside the catalogue: an additional damper force c₂ v|v|, N s²/m².
     pub quadratic_damping: Option<f64>,
-    /// Outside the catalogue: the top mount stiffens with the square of its stretch, N/m³.
+    /// Outside the catalogue: the top mount stiffens with the square of its extension, N/m³.
     pub cubic_top_mount: Option<f64>,
     /// A law in another form than the catalogue's.
     pub other: Option<Other>,
@@ -88,9 +89,9 @@ pub struct Laws {
     pub flexible: Option<Flexible>,
     /// A flaw of hardware: the damper warms up.
     pub heat: Option<Heat>,
-    /// A flaw of hardware: the tyre's law over a cleat.
+    /// A flaw of hardware: the tyre consists of radial springs over a cleat.
     pub radial_springs: Option<RadialSprings>,
-    /// A flaw of hardware: the same by another law again.
+    /// A flaw of hardware: the tyre follows elliptical cams over a cleat.
     pub cams: Option<Cams>,
 }
 
@@ -136,12 +137,12 @@ law!(/// A mass on a spring and damper on the wheel.
     Resonator { m_resonator, k_resonator, c_resonator });
 
 impl Laws {
-    /// Mass that moves with the wheel itself, kg: its belt and its resonator are parts of the wheel's mass.
+    /// Mass that moves with the rim, kg: the wheel's mass less its belt and its resonator.
     pub fn carried_by_the_wheel(&self, m_wheel: f64) -> f64 {
         m_wheel - self.belt.map_or(0.0, |belt| belt.m_belt) - self.resonator.map_or(0.0, |own| own.m_resonator)
     }
 
-    /// The laws of a set of effects. Sensor effects are not laws; the rig applies them.
+    /// The laws of a set of effects. Sensor effects are not among them; the sensors apply them.
     pub fn of(effects: &[Hidden]) -> Self {
         let mut laws = Self::default();
         for effect in effects {
@@ -150,7 +151,7 @@ impl Laws {
         laws
     }
 
-    /// The same in a car that has flaws.
+    /// The laws of a set of effects in a car with flaws.
     pub fn on(self, hardware: &Hardware) -> Self {
         Self {
             flexible: hardware.flexible(),
@@ -192,7 +193,7 @@ impl Laws {
             ("damper_fade", _) => self.fade = Some(effect.get("share")),
             ("quadratic_damping", _) => self.quadratic_damping = Some(effect.get("c2")),
             ("cubic_top_mount", _) => self.cubic_top_mount = Some(effect.get("k3")),
-            // Laws in another form, and of what is left parts that the layout already holds, and sensors.
+            // Laws in another form. All other names are parts that the layout holds already, or sensor effects.
             _ => self.other = self.other.or(Other::named(&effect.name, |name| effect.get(name))),
         }
     }

@@ -1,4 +1,4 @@
-//! The K&C rig: the wheel is moved against a clamped body.
+//! The K&C rig: it moves the wheel against a clamped body.
 
 use std::f64::consts::{PI, TAU};
 
@@ -8,20 +8,21 @@ use crate::integrate::step;
 use crate::other_law::Other;
 use crate::random::Random;
 
-/// Peak velocity of what is called quasi-static, m/s.
+/// Peak velocity of a quasi-static cycle, m/s.
 const SLOW: f64 = 0.008;
-/// Time from the design position to the end of the travel, where every cycle begins, s.
+/// Time from the design position to the end of the travel, where each cycle begins, s.
 const RUN_IN: f64 = 2.0;
-/// Step of the integration, s, at most.
+/// Largest integration step, s.
 const STEP: f64 = 5e-4;
-/// A damper that is many times harder at the ends of the travel holds a light top mount so fast that steps are so much shorter.
+/// A damper that is many times stiffer at the ends of the travel makes a light top mount settle that many times faster,
+/// so the steps are shorter by this factor.
 const STIFF: f64 = 10.0;
 
 /// A vertical sine of the wheel.
 struct Sine {
-    /// m.
+    /// Amplitude, m.
     amplitude: f64,
-    /// rad/s.
+    /// Angular frequency, rad/s.
     omega: f64,
 }
 
@@ -33,7 +34,7 @@ impl Sine {
         }
     }
 
-    /// Travel and velocity; times before zero lead to where it begins.
+    /// Travel, m, and velocity, m/s. Times before zero lead from the design position to the start of the cycle.
     fn at(&self, t: f64) -> [f64; 2] {
         let a = self.amplitude;
         if t < 0.0 {
@@ -44,7 +45,8 @@ impl Sine {
         [a * angle.cos(), -a * self.omega * angle.sin()]
     }
 
-    /// Rows of time, travel, velocity and force, so many s apart. The rig is slow: inertia counts for nothing.
+    /// Rows of time, travel, velocity and force, `every` s apart. The rig is so slow that inertia forces are
+    /// negligible.
     fn run(&self, corner: &Corner, samples: usize, apart: f64) -> Vec<[f64; 4]> {
         let laws = Laws {
             inertance: None,
@@ -75,7 +77,7 @@ impl Sine {
         rows
     }
 
-    /// The state with the body held and the wheel where the rig has it; what hangs on the wheel goes with it.
+    /// The state with the body clamped and the wheel at the rig's position. Masses attached to the wheel move with it.
     fn clamped(&self, t: f64, y: &State) -> State {
         let mut y = *y;
         let [travel, velocity] = self.at(t);

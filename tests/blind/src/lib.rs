@@ -1,4 +1,4 @@
-//! A second axle simulator that shares nothing with qcar: it makes campaigns in which effects are hidden.
+//! A second axle simulator that shares no code with qcar. It makes campaigns of axles with hidden effects.
 
 #![allow(
     missing_docs,
@@ -7,27 +7,27 @@
 
 mod random;
 
-// What a campaign is to hold.
+// The content of a campaign.
 pub mod hardware;
 pub mod programme;
 
-// What is hidden in the car, and the car.
+// The car and its hidden effects.
 mod other_law;
 
 pub mod hidden;
 
 mod axle;
 
-// How it moves.
+// The motion.
 mod corner;
 
 mod integrate;
 
-// On the rigs.
+// The rigs.
 mod kc;
 mod rig;
 
-// On the track.
+// The track.
 mod road;
 
 mod enveloping;
@@ -35,18 +35,18 @@ mod radial;
 
 mod cleat;
 
-// What sensors make of it.
+// The sensors.
 mod calibration;
 
 mod sensor;
 
-// All of it in a folder.
+// The campaign's folder.
 mod campaign;
 
-// What of it can be found at all.
+// How much of the hidden effects can be found at all.
 mod separable;
 
-// Cases by the hundred, and what was answered to them.
+// The cases of the blind matrix, and the answers to them.
 pub mod matrix;
 
 pub mod outcome;
@@ -60,31 +60,31 @@ use hardware::{Flaw, Hardware};
 use hidden::Hidden;
 use programme::Programme;
 
-/// What campaign is wanted.
+/// The campaign to make.
 #[derive(Clone, Debug)]
 pub struct Order {
     /// Seed of everything random.
     pub seed: u64,
     /// `a`, `c` or `d`.
     pub axle: String,
-    /// The model that the engineer starts from, in place of the axle without what is hidden.
+    /// The model that the engineer starts from, if it is not the axle without its hidden parts.
     pub model: Option<String>,
     /// Standard deviation of a sensor's gain error.
     pub systematic: f64,
     /// Noise of the rig's accelerometers, m/s².
     pub noise: f64,
-    /// Which runs.
+    /// The runs of the campaign.
     pub programme: Programme,
-    /// Whether to run its cleats too.
+    /// Whether the campaign includes drives over cleats.
     pub cleats: bool,
-    /// What the model lacks.
+    /// The hidden effects: in the simulated car, not in the engineer's model.
     pub effects: Vec<Hidden>,
-    /// What no model has.
+    /// Flaws of car, rig and sensors that no model describes.
     pub flaws: Vec<Flaw>,
 }
 
 impl Order {
-    /// A campaign of an axle with nothing hidden.
+    /// A campaign of an axle without hidden effects.
     pub fn clean(axle: &str, seed: u64) -> Self {
         Self {
             seed,
@@ -109,8 +109,8 @@ pub fn make(order: Order, folder: &Path) -> Result<(), String> {
     campaign::write(&plan, &axle, folder).map_err(|e| format!("{}: {e}", folder.display()))
 }
 
-/// How much of what is hidden no parameter of the engineer's model can imitate: RMS over the fitted runs in units of
-/// the sensors' noise, by the equations of this simulator.
+/// The part of the hidden effects' response that no change of the engineer's parameters can reproduce: RMS over the
+/// fitted runs, in units of the sensors' noise, by the equations of this simulator.
 ///
 /// # Errors
 /// An axle that does not exist.
@@ -148,7 +148,7 @@ fn planned(order: Order, folder: &Path) -> Result<(campaign::Plan, Axle, Axle), 
     Ok((plan, axle, seen))
 }
 
-/// The axle of a letter, as its table has it.
+/// The axle that a letter names.
 fn known(letter: &str) -> Result<Layout, String> {
     let axle = |subframe, powertrain| Layout {
         top_mount: true,
@@ -163,7 +163,7 @@ fn known(letter: &str) -> Result<Layout, String> {
     }
 }
 
-/// What the engineer's model has: the axle less the parts that are hidden.
+/// The parts of the engineer's model: those of the axle less the hidden ones.
 fn without(mut layout: Layout, effects: &[Hidden]) -> Layout {
     for effect in effects {
         match effect.name.as_str() {
@@ -175,7 +175,7 @@ fn without(mut layout: Layout, effects: &[Hidden]) -> Layout {
     layout
 }
 
-/// What the axle really has.
+/// The parts of the real axle.
 fn real(mut layout: Layout, effects: &[Hidden]) -> Layout {
     for effect in effects {
         match (effect.name.as_str(), effect.at.as_str()) {
@@ -188,7 +188,7 @@ fn real(mut layout: Layout, effects: &[Hidden]) -> Layout {
     layout
 }
 
-/// Hidden parts have the values that their effect names.
+/// The hidden effects give the values of the hidden parts.
 fn with_parts(mut axle: Axle, effects: &[Hidden]) -> Axle {
     for effect in effects {
         for (name, value) in &effect.parameters {
@@ -209,7 +209,7 @@ fn with_parts(mut axle: Axle, effects: &[Hidden]) -> Axle {
     axle
 }
 
-/// The shipped model of what the engineer knows.
+/// The shipped model with the parts that the engineer knows.
 fn model_name(letter: &str, effects: &[Hidden]) -> String {
     let hides = |name: &str| effects.iter().any(|effect| effect.name == name);
     match letter {

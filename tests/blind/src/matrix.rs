@@ -14,31 +14,31 @@ use crate::random::Random;
 use entries::{Entry, OUTSIDE, OUTSIDE_LATER, SINGLES};
 use other_laws::OTHER_LAWS;
 
-/// What a case is about.
+/// The kind of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Kind {
-    /// One effect of the catalogue.
+    /// One effect of the catalogue is hidden.
     Single,
     /// Nothing is hidden.
     Clean,
-    /// An effect that the catalogue does not have.
+    /// One effect that is not in the catalogue is hidden.
     Outside,
-    /// Two effects at once.
+    /// Two effects are hidden.
     Pair,
     /// Nothing is hidden, in a short campaign.
     FastClean,
     /// Nothing is hidden in hardware with flaws.
     HardwareClean,
-    /// One effect of usual strength in hardware with flaws.
+    /// One effect of usual strength is hidden in hardware with flaws.
     HardwareSingle,
-    /// One effect of usual strength in a campaign that shows little.
+    /// One effect of usual strength is hidden in a campaign with few runs, sensors or frequencies.
     Minimal,
-    /// One effect of usual strength by another law than the catalogue's.
+    /// One effect of usual strength is hidden, with a law that differs from the catalogue's.
     OtherLaw,
 }
 
 impl Kind {
-    /// All of them.
+    /// All kinds.
     pub const ALL: [Self; 9] = [
         Self::Single,
         Self::Clean,
@@ -51,7 +51,7 @@ impl Kind {
         Self::OtherLaw,
     ];
 
-    /// A kind by its name as `{:?}` prints it.
+    /// The kind with this name, as `{:?}` prints it.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| format!("{kind:?}") == name)
     }
@@ -60,9 +60,9 @@ impl Kind {
 /// A campaign of the matrix.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// What it is about.
+    /// The kind of the case.
     pub kind: Kind,
-    /// Unique.
+    /// Unique name.
     pub name: String,
     /// The campaign.
     pub order: Order,
@@ -71,17 +71,18 @@ pub struct Case {
 /// Places of two entries of [`SINGLES`] that are hidden together.
 const PAIRS: [(usize, usize); 8] = [(3, 1), (5, 7), (3, 19), (1, 20), (0, 5), (16, 3), (11, 5), (21, 6)];
 
-/// Levels of the noise of the rig's accelerometers, m/s², taken in turn.
+/// Noise levels of the rig's accelerometers, m/s², used in turn.
 const NOISE: [f64; 3] = [0.02, 0.01, 0.04];
 
-/// The first seed that draws what the earlier ones take from tables: strengths, pairs, noise and gain errors.
+/// The first seed that draws strengths, pairs, noise and gain errors at random. Earlier seeds take them from tables.
 const DRAWN: u64 = 3;
 
-/// Share of the way from the weakest effect to the strongest: all of it, and from what is usual on.
+/// Ranges of strength from 0, the weakest effect, to 1, the strongest: the whole range, and the part from the usual
+/// strength on.
 const ANY: (f64, f64) = (0.0, 1.0);
 const USUAL: (f64, f64) = (0.5, 1.0);
 
-/// Cases of one seed.
+/// The cases of one seed.
 pub fn cases(seed: u64) -> Vec<Case> {
     let draw = Draw { seed };
     let mut cases = draw.of_entries(Kind::Single, &SINGLES);
@@ -113,7 +114,7 @@ impl Draw {
         Random::new(self.seed, purpose)
     }
 
-    /// An order with the bench of its number: noise and gain errors.
+    /// A campaign order with the noise and gain errors that belong to its number.
     fn order(&self, k: usize, axle: &str, effects: Vec<Hidden>) -> Order {
         let mut random = self.random(&format!("bench {k}"));
         let (noise, systematic) = if self.is_fresh() {
@@ -132,7 +133,7 @@ impl Draw {
         }
     }
 
-    /// An effect by its place in the table, or drawn.
+    /// The effect at this index of the table, or drawn at random.
     fn hidden(&self, entry: &Entry, strength: usize, purpose: &str, strengths: (f64, f64)) -> Hidden {
         if self.is_fresh() {
             entry.drawn(strengths, &mut self.random(purpose))
@@ -149,7 +150,7 @@ impl Draw {
         }
     }
 
-    /// Every entry three times.
+    /// Each entry of the table three times.
     fn of_entries(&self, kind: Kind, entries: &[Entry]) -> Vec<Case> {
         let mut cases = Vec::new();
         for (k, entry) in entries.iter().enumerate() {
@@ -208,7 +209,7 @@ impl Draw {
         cases
     }
 
-    /// A hundred, of which nothing is told beforehand.
+    /// A hundred cases, all drawn at random.
     fn fast_clean(&self) -> Vec<Case> {
         let of_number = |k: usize| {
             let mut random = self.random(&format!("fast clean {k}"));
@@ -224,7 +225,7 @@ impl Draw {
         (0..100).map(of_number).collect()
     }
 
-    /// Each flaw alone, all mild ones together in twenty, half of them short, and the one that is more.
+    /// Each flaw alone, all mild flaws together in twenty cases (half of them short), and the flaw that is not mild.
     fn hardware_clean(&self) -> Vec<Case> {
         let mut all: Vec<(String, Vec<Flaw>, Programme)> = Vec::new();
         all.extend(Flaw::MILD.map(|flaw| (format!("{flaw:?} alone"), vec![flaw], Programme::full())));
@@ -244,7 +245,7 @@ impl Draw {
         all.into_iter().enumerate().map(of_number).collect()
     }
 
-    /// Every effect of the car in hardware with all flaws.
+    /// Each effect of the car in hardware with all flaws.
     fn hardware_single(&self) -> Vec<Case> {
         let of_entry = |(k, entry): (usize, &Entry)| {
             let name = format!("hardware {}", entry.title());
@@ -258,7 +259,7 @@ impl Draw {
         of_car().into_iter().enumerate().map(of_entry).collect()
     }
 
-    /// Effects that are drawn, in campaigns that show little.
+    /// Random effects in campaigns with few runs, sensors or frequencies.
     fn minimal(&self) -> Vec<Case> {
         let of_number = |k: usize| {
             let mut random = self.random(&format!("minimal {k}"));
@@ -274,7 +275,7 @@ impl Draw {
         (0..32).map(of_number).collect()
     }
 
-    /// Every law of another form twice.
+    /// Each law of another form twice.
     fn other_laws(&self) -> Vec<Case> {
         let mut cases = Vec::new();
         for (k, (entry, _)) in OTHER_LAWS.iter().enumerate() {
@@ -289,7 +290,7 @@ impl Draw {
     }
 }
 
-/// The ways in which a campaign may show little, in turn.
+/// The reduced campaigns, used in turn.
 pub const LITTLE: [&str; 4] = ["no body sensor", "one sweep", "cleats alone", "a third of the band"];
 
 fn little(k: usize, random: &mut Random) -> (&'static str, Programme) {
@@ -305,18 +306,18 @@ fn little(k: usize, random: &mut Random) -> (&'static str, Programme) {
     (LITTLE[k % LITTLE.len()], programme)
 }
 
-/// Effects of the car, which no sensor has.
+/// Effects of the car; those of sensors are excluded.
 fn of_car() -> Vec<&'static Entry> {
     let all = SINGLES.iter();
     all.filter(|entry| !entry.name.starts_with("sensor_")).collect()
 }
 
-/// One of several, drawn.
+/// A random one of several.
 fn any<T: Copy>(of: &[T], random: &mut Random) -> T {
     of[random.uniform(0.0, of.len() as f64) as usize]
 }
 
-/// Two effects at different places, of which an upright axle can have both.
+/// Two effects at different places that an upright axle can have together.
 fn draw_pair(random: &mut Random) -> (&'static Entry, &'static Entry) {
     let fits = |entry: &&Entry| entry.axle != "d" && !entry.name.starts_with("sensor_") && entry.name != "top_mount";
     let all: Vec<&Entry> = SINGLES.iter().filter(fits).collect();

@@ -1,17 +1,17 @@
-//! Laws in another form than the catalogue has for the same thing, and laws that it has in no form.
+//! Laws that differ from the catalogue's for the same mechanism, and laws that the catalogue has in no form.
 //!
-//! A corner hides one of them at most; `inner` are its states.
+//! A corner hides at most one of them; `inner` are its states.
 
 use std::f64::consts::{FRAC_2_PI, TAU};
 
-/// States that a law may have.
+/// Largest number of states of a law.
 pub const INNER: usize = 3;
 
 /// One of the laws, by its names and parameters in the matrix.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Other {
-    /// Bristles with a Stribeck peak (Canudas de Wit, C., Olsson, H., Åström, K. J., Lischinsky, P.: A new model for control
-    /// of systems with friction, IEEE Trans. Automatic Control 40, 1995).
+    /// Friction of elastic bristles with a Stribeck peak (Canudas de Wit, C., Olsson, H., Åström, K. J., Lischinsky,
+    /// P.: A new model for control of systems with friction, IEEE Trans. Automatic Control 40, 1995).
     LuGre {
         f_coulomb: f64,
         f_static: f64,
@@ -25,42 +25,43 @@ pub enum Other {
     /// Parallel elements that stick and slip (Iwan, W. D.: A distributed-element model for hysteresis, J. Appl. Mech. 33,
     /// 1966).
     SlipStack { f_slip: f64, k_stick: f64 },
-    /// A stop of foam: a power of its compression, `k_stop` its rate at 10 mm.
+    /// A foam stop: its force is a power of its compression, with the rate `k_stop` at 10 mm.
     FoamStop { gap: f64, k_stop: f64, power: f64 },
-    /// A spring that stiffens like a hyperbolic sine of its travel over a length.
+    /// A spring whose force is a hyperbolic sine of its travel over a length.
     SinhSpring { length: f64 },
-    /// A damper whose force is a power of its velocity, and the given one at `v_same`.
+    /// A damper whose force is a power of its velocity. At `v_same` it equals that of the linear damper.
     PowerDamper { exponent: f64, v_same: f64 },
-    /// A damper by a table of forces with straight lines between: it digresses, and rebound is stronger.
+    /// A damper with a force table that is interpolated linearly: digressive, and stronger in rebound.
     TableDamper { digression: f64, asymmetry: f64 },
-    /// Play that a damper comes out of softly.
+    /// Play in a damper with a smooth onset of the force.
     SoftPlay { gap: f64 },
-    /// A tyre that stiffens exponentially over a length.
+    /// A tyre that stiffens exponentially with its compression over a length.
     ExponentialTire { length: f64 },
-    /// A tyre with two Maxwell branches, five times apart in frequency.
+    /// A tyre with two Maxwell branches whose frequencies differ by a factor of five.
     TwoBranchTire { stiffness_ratio: f64, frequency: f64 },
-    /// Rubber of nearly fractional order by three Maxwell branches, five times apart (Schiessel, H., Blumen, A.:
-    /// Hierarchical analogues to fractional relaxation equations, J. Phys. A 26, 1993).
+    /// Rubber of nearly fractional order: three Maxwell branches whose frequencies differ by factors of five
+    /// (Schiessel, H., Blumen, A.: Hierarchical analogues to fractional relaxation equations, J. Phys. A 26, 1993).
     FractionalMount { k_middle: f64, frequency: f64 },
-    /// A bushing along x that stiffens with the square of its travel: at `travel` its force has doubled.
+    /// A bushing along x that stiffens with the square of its travel: at `travel` its force is twice the linear one.
     CubicBushing { travel: f64 },
-    /// Drag of the body by the square of its velocity.
+    /// Drag on the body, proportional to the square of its velocity.
     QuadraticDrag { c2: f64 },
-    /// In no form in the catalogue: a damper whose damping grows with the square of its travel, doubled at `travel`.
+    /// In no form in the catalogue: a damper whose damping grows with the square of its travel and is doubled at
+    /// `travel`.
     PositionDamper { travel: f64 },
-    /// In no form in the catalogue: a hydraulic stop, whose damping grows beyond a travel in rebound alone.
+    /// In no form in the catalogue: a hydraulic rebound stop, whose damping grows beyond a travel in rebound only.
     HydraulicStop { gap: f64, c_per_metre: f64 },
 }
 
-/// Slopes of a table damper change at these velocities, m/s.
+/// Velocities at which the slope of a table damper changes, m/s.
 const KNEES: [f64; 3] = [0.03, 0.12, 0.4];
-/// The foam's rate is quoted at this compression, m.
+/// Compression at which the foam's rate is given, m.
 const FOAM: f64 = 0.01;
-/// Below this velocity a power of it is rounded off, m/s.
+/// Below this velocity a power of it is smoothed, m/s.
 const ROUNDED: f64 = 0.005;
 
 impl Other {
-    /// The law of a name, if it is one of these, with its parameters.
+    /// The law with this name and its parameters, if it is one of these.
     pub fn named(name: &str, get: impl Fn(&str) -> f64) -> Option<Self> {
         Some(match name {
             "lugre_friction" => Self::LuGre {
@@ -113,12 +114,12 @@ impl Other {
         })
     }
 
-    /// Whether it sticks, which takes shorter steps.
+    /// Whether the law can stick, which needs shorter integration steps.
     pub fn is_dry(&self) -> bool {
         matches!(self, Self::LuGre { .. } | Self::Arctan { .. } | Self::SlipStack { .. })
     }
 
-    /// Friction beside the damper, N, over its velocity.
+    /// Friction force parallel to the damper, N, at a velocity, m/s.
     pub fn friction(&self, v: f64, inner: &[f64], rate: &mut [f64]) -> f64 {
         match *self {
             Self::LuGre {
@@ -145,7 +146,7 @@ impl Other {
         }
     }
 
-    /// What a spring of rate `k` has beyond it, N, over its stretch.
+    /// Force of a spring beyond `k` times its extension, N.
     pub fn spring(&self, k: f64, s: f64) -> f64 {
         match *self {
             Self::FoamStop { gap, k_stop, power } => {
@@ -157,7 +158,7 @@ impl Other {
         }
     }
 
-    /// Force of the damper, N, in place of `c v`.
+    /// Force of the damper, N, which replaces `c v`.
     pub fn damper(&self, c: f64, s: f64, v: f64) -> Option<f64> {
         match *self {
             Self::PowerDamper { exponent, v_same } => Some(c * v * (v.hypot(ROUNDED) / v_same).powf(exponent - 1.0)),
@@ -175,7 +176,7 @@ impl Other {
         }
     }
 
-    /// What a tyre of rate `k` has beyond it, N, over its compression from rest.
+    /// Force of a tyre beyond `k` times its compression from rest, N.
     pub fn tire(&self, k: f64, compression: f64) -> f64 {
         match *self {
             Self::ExponentialTire { length } => k * (length * ((compression / length).exp() - 1.0) - compression),
@@ -183,7 +184,7 @@ impl Other {
         }
     }
 
-    /// What relaxes in the tyre, N.
+    /// Force of the relaxing branches in the tyre, N.
     pub fn tire_memory(&self, inner: &[f64]) -> f64 {
         match self {
             Self::TwoBranchTire { .. } => inner[0] + inner[1],
@@ -191,7 +192,7 @@ impl Other {
         }
     }
 
-    /// How that changes in a tyre of rate `k`.
+    /// Derivative of the states in a tyre of rate `k`.
     pub fn tire_relaxes(&self, k: f64, compression_rate: f64, inner: &[f64], rate: &mut [f64]) {
         if let Self::TwoBranchTire {
             stiffness_ratio,
@@ -208,7 +209,7 @@ impl Other {
         }
     }
 
-    /// What relaxes in the top mount, N.
+    /// Force of the relaxing branches in the top mount, N.
     pub fn top_mount(&self, v: f64, inner: &[f64], rate: &mut [f64]) -> f64 {
         match *self {
             Self::FractionalMount { k_middle, frequency } => {
@@ -219,7 +220,7 @@ impl Other {
         }
     }
 
-    /// What a bushing along x of rate `k` has beyond it, N.
+    /// Force of a bushing along x beyond `k` times its travel, N.
     pub fn bushing(&self, k: f64, s: f64) -> f64 {
         match *self {
             Self::CubicBushing { travel } => k * s * (s / travel).powi(2),
@@ -236,7 +237,7 @@ impl Other {
     }
 }
 
-/// Integral of the slopes of a table damper, as shares of its damping, from rest to a velocity.
+/// Integral of the slopes of a table damper from rest to a velocity, m/s; slopes are shares of its damping.
 fn table(digression: f64, v: f64) -> f64 {
     let starts = [0.0, KNEES[0], KNEES[1], KNEES[2]];
     let ends = [KNEES[0], KNEES[1], KNEES[2], f64::INFINITY];
@@ -247,7 +248,8 @@ fn table(digression: f64, v: f64) -> f64 {
     (0..).zip(starts.into_iter().zip(ends)).map(segment).sum()
 }
 
-/// Force of parallel Maxwell branches, each by stiffness and frequency; `inner` are their forces.
+/// Total force, N, of parallel Maxwell branches, each with a stiffness, N/m, and a frequency, Hz. `inner` are the forces
+/// of the branches; their derivatives go to `rate`.
 fn maxwell(branches: &[(f64, f64)], v: f64, inner: &[f64], rate: &mut [f64]) -> f64 {
     for (i, (k, frequency)) in branches.iter().enumerate() {
         rate[i] = k * v - TAU * frequency * inner[i];
@@ -259,7 +261,7 @@ fn maxwell(branches: &[(f64, f64)], v: f64, inner: &[f64], rate: &mut [f64]) -> 
 mod tests {
     use super::*;
 
-    /// Force of a friction that slides at a velocity long enough.
+    /// Force of a friction element after it has slid at a constant velocity for a long time.
     fn sliding(law: Other, v: f64) -> f64 {
         let mut inner = [0.0; INNER];
         let (step, mut force) = (2e-6, 0.0);
@@ -294,7 +296,7 @@ mod tests {
         assert!((sliding(lugre, 0.005) - 60.0 - 30.0 / std::f64::consts::E).abs() < 0.1);
     }
 
-    /// Each slope begins where the one before ends.
+    /// The force is continuous where the slope changes.
     #[test]
     fn a_table_has_its_slopes() {
         let slope = |v: f64| (table(0.5, v + 1e-6) - table(0.5, v - 1e-6)) / 2e-6;
@@ -310,7 +312,7 @@ mod tests {
         assert!((force(0.02) - force(-0.02) - 2.0 * 1000.0 * 1.4 * 0.02).abs() < 1e-9);
     }
 
-    /// Held still, a Maxwell branch keeps 1/e of its force after the time of its frequency.
+    /// At rest, the force of a Maxwell branch falls to 1/e in the time constant of its frequency.
     #[test]
     fn branches_relax_by_their_frequencies() {
         let law = Other::FractionalMount {

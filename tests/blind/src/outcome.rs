@@ -1,47 +1,47 @@
-//! What was answered to a case of the matrix, held against the truth, as a line of a table.
+//! The answer to a case of the matrix, compared with the truth, as a line of a table.
 
 use serde_json::Value;
 
 use crate::hidden::Hidden;
 use crate::matrix::{Case, Kind, family};
 
-/// An answer beside the truth.
+/// An answer and the truth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
     pub kind: Kind,
     /// Name of the case.
     pub case: String,
-    /// What no parameter can imitate, in units of the noise.
+    /// RMS of the hidden effects' response that no parameter can reproduce, in units of the noise.
     pub strength: f64,
-    /// What is hidden.
+    /// The hidden effects.
     pub truth: Vec<Place>,
-    /// `none`, `found`, `class`, `unknown`, or `failed` where there was no answer.
+    /// `none`, `found`, `class`, `unknown`, or `failed` if there was no answer.
     pub verdict: String,
-    /// Stated by the answer, if it was; so are the others that may be missing.
+    /// Probability that the answer states. This and the following fields are `None` if the answer does not state them.
     pub probability: Option<f64>,
-    /// What was named.
+    /// The effects that the answer names.
     pub named: Vec<Place>,
-    /// What explains as much, where several do.
+    /// The members of the class, if several effects explain the data equally well.
     pub alike: Vec<Place>,
-    /// Share of the excess of the squared held-out gap that is gone.
+    /// Share of the excess of the squared held-out gap that the answer explains.
     pub closed: f64,
-    /// Largest relative error of the parameters of what was named rightly.
+    /// Largest relative error of the parameters of rightly named effects.
     pub error: f64,
-    /// How many of them lie within two standard errors, of how many.
+    /// Number of these parameters within two standard errors of the truth, and their total number.
     pub covered: (usize, usize),
-    /// Place of the law that was learned and the share of the gap that it closes.
+    /// Place of the learned law and the share of the gap that it closes.
     pub learned: Option<(String, f64)>,
-    /// Where something is missing, the best first.
+    /// Places at which the model lacks an effect, the most probable first.
     pub places: Vec<String>,
-    /// The best named candidates, each with its probability and what it explains.
+    /// The best candidates, each with its probability and the share of the gap that it explains.
     pub candidates: Vec<String>,
-    /// Sensor, kind of run and what is left there in percent of the signal.
+    /// Sensor, kind of run and the remaining residual, in percent of the signal.
     pub left: Vec<String>,
     pub seconds: f64,
 }
 
-/// An effect at its place. Of a law in another form than the catalogue's, several names may count: they are in `name` with
-/// bars between them.
+/// An effect at its place. For a law that differs from the catalogue's, several names may count as right: `name` holds
+/// them separated by `|`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Place {
     pub name: String,
@@ -60,7 +60,7 @@ impl Place {
         }
     }
 
-    /// Of an object, or of `effect@place`.
+    /// From a JSON object with name and place, or from the text `effect@place`.
     fn of_json(value: &Value) -> Option<Self> {
         if let Some(text) = value.as_str() {
             return Some(Self::parse(text));
@@ -85,12 +85,12 @@ impl Place {
         format!("{}@{}", self.name, self.at)
     }
 
-    /// Whether this is what another one names.
+    /// Whether both name the same effect at the same place.
     pub fn is_named_by(&self, other: &Self) -> bool {
         self.has_name_of(other) && self.at == other.at
     }
 
-    /// Whether the names agree, wherever they are placed.
+    /// Whether the names agree, at any place.
     pub fn has_name_of(&self, other: &Self) -> bool {
         self.name.split('|').any(|name| name == other.name)
     }
@@ -128,7 +128,7 @@ impl Outcome {
         outcome
     }
 
-    /// Where there was no answer.
+    /// An outcome without an answer.
     pub fn failed(case: &Case, strength: f64) -> Self {
         Self {
             kind: case.kind,
@@ -168,7 +168,7 @@ impl Outcome {
         }
     }
 
-    /// As a line of the table.
+    /// The outcome as a line of the table.
     pub fn line(&self) -> String {
         let join = |places: &[Place]| places.iter().map(Place::words).collect::<Vec<_>>().join("+");
         let (learned_at, learned_closed) = match &self.learned {
@@ -201,7 +201,7 @@ impl Outcome {
     /// Reads such a line.
     ///
     /// # Errors
-    /// A line that is none.
+    /// A line with a wrong number of cells, an unknown kind, or text where a number is expected.
     pub fn parse(line: &str) -> Result<Self, String> {
         let cells: Vec<&str> = line.split('\t').collect();
         let expected = HEADER.split('\t').count();
@@ -259,8 +259,8 @@ fn words(value: &Value, word: impl Fn(&Value) -> Option<String>) -> Vec<String> 
     list(value).filter_map(word).collect()
 }
 
-/// Factor of a true parameter in the terms of the answer. The pitch angle of a sub-frame has no scale of its own: an answer
-/// assumes a half length, which scales inertia and offset. It is 1 for every other parameter.
+/// Factor that converts a true parameter to the answer's units. The answer assumes a half length of the sub-frame,
+/// which scales its pitch inertia and offset. The factor is 1 for every other parameter.
 fn scale(hidden: &Hidden, finding: &Value, name: &str) -> f64 {
     let length = || Some(finding["parameters"]["half_length"].as_f64()? / hidden.get("half_length"));
     match (hidden.name.as_str(), name) {
@@ -274,7 +274,7 @@ fn truth(case: &Case) -> Vec<Place> {
     case.order.effects.iter().map(Place::of_hidden).collect()
 }
 
-/// What the answer says that it explains, or else what follows from the gaps that it quotes.
+/// The share that the answer states, or else the share that follows from the gaps that it states.
 fn closed(answer: &Value) -> f64 {
     if let Some(explained) = answer["explained"].as_f64() {
         return explained;

@@ -1,13 +1,13 @@
-//! Which runs a campaign has.
+//! The runs of a campaign.
 
 /// The runs of a campaign.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Programme {
-    /// On the 4-poster.
+    /// Sweeps on the 4-poster.
     pub sweeps: Vec<SweepRun>,
-    /// Levels of the dynamic bounce on the K&C rig, mm/s; without any there are no K&C curves at all.
+    /// Velocity levels of the dynamic bounce on the K&C rig, mm/s. Without any, the campaign has no K&C curves.
     pub kc: Vec<u32>,
-    /// On the track.
+    /// Drives over cleats on the track.
     pub cleats: Vec<CleatRun>,
     /// Whether the body carries sensors.
     pub body_sensor: bool,
@@ -33,7 +33,7 @@ pub struct SweepRun {
 pub struct CleatRun {
     /// mm.
     pub height: u32,
-    /// Number of the speed.
+    /// Index of the speed.
     pub number: u32,
     /// km/h.
     pub speed: f64,
@@ -44,7 +44,7 @@ pub struct CleatRun {
 }
 
 impl CleatRun {
-    /// Names the noise of the run.
+    /// The text that seeds the noise of the run.
     pub fn stream(&self) -> u32 {
         1000 * self.height + self.number
     }
@@ -79,13 +79,13 @@ impl Programme {
         }
     }
 
-    /// The same without drives.
+    /// Three short sweeps and K&C curves, without drives.
     pub fn without_cleats(mut self) -> Self {
         self.cleats.clear();
         self
     }
 
-    /// The fast one without the body's sensors.
+    /// The fast programme without the body's sensors.
     pub fn no_body_sensor() -> Self {
         Self {
             body_sensor: false,
@@ -118,7 +118,7 @@ impl Programme {
         }
     }
 
-    /// Sweeps over a part of the band, Hz, and K&C curves.
+    /// Sweeps over a part of the band, given in Hz, and K&C curves.
     pub fn band(from: f64, to: f64) -> Self {
         let mut programme = Self::fast().without_cleats();
         for sweep in &mut programme.sweeps {
@@ -128,7 +128,8 @@ impl Programme {
     }
 }
 
-/// Three speeds at four heights. One height in four of each speed is fitted, so that both are spread over the set.
+/// Drives at three speeds over four heights. Of each speed one height in four is fitted, so that fitted and held-out
+/// drives are spread over speeds and heights.
 fn all_cleats() -> Vec<CleatRun> {
     let of_height = |height: u32| {
         (0..3).map(move |number| {

@@ -1,4 +1,4 @@
-//! A tyre of radial springs over a road: another law than the area of its overlap.
+//! A tyre of radial springs on a road: a law that differs from the area of overlap.
 
 use crate::axle::Axle;
 use crate::hardware::RadialSprings;
@@ -6,20 +6,20 @@ use crate::road::Road;
 
 /// Angle between two springs, rad.
 const APART: f64 = 0.01;
-/// Half of the sector that may touch, rad.
+/// Half of the sector in which springs can touch the road, rad.
 const SECTOR: f64 = 0.8;
 /// Deepest compression of a spring, as share of the radius.
 const DEEPEST: f64 = 0.4;
-/// How exactly the end of a spring is found, m.
+/// Tolerance of the position of a spring's end, m.
 const EXACT: f64 = 2e-6;
-/// Deflections at which the sum on the flat is tabulated.
+/// Number of deflections at which the sum on flat ground is tabulated.
 const TABLE: usize = 400;
 
-/// Springs between hub and tread, each of which is pushed in by the road along its own direction.
+/// Springs between hub and tread. The road compresses each along its own direction.
 pub struct Radial {
     exponent: f64,
     radius: f64,
-    /// Sum of the springs on the flat over deflections up to [`DEEPEST`].
+    /// Sum of the springs' forces on flat ground for deflections up to [`DEEPEST`].
     flat: Vec<f64>,
 }
 
@@ -40,7 +40,8 @@ impl Radial {
         radial
     }
 
-    /// Deflection on the flat that would push as much, m, and the direction of the push, for a place of the hub.
+    /// For a position of the hub: the deflection on flat ground that gives the same force, m, and the direction of the
+    /// force.
     pub fn touch(&self, road: &Road, hub: [f64; 2]) -> (f64, [f64; 2]) {
         let [x, z] = self.sum(road, hub);
         let push = x.hypot(z);
@@ -53,7 +54,7 @@ impl Radial {
         (place / TABLE as f64 * DEEPEST * self.radius, [x / push, z / push])
     }
 
-    /// Sum of the springs' pushes on the hub, along x and z.
+    /// Sum of the springs' forces on the hub, along x and z.
     fn sum(&self, road: &Road, hub: [f64; 2]) -> [f64; 2] {
         let above = hub[1] - road.highest(hub[0] - self.radius, hub[0] + self.radius);
         let half = (above / self.radius).clamp(-1.0, 1.0).acos().min(SECTOR);
@@ -71,7 +72,7 @@ impl Radial {
         sum
     }
 
-    /// How far the road pushes in a spring of a direction, m.
+    /// Compression of the spring in a direction, m.
     fn compression(&self, road: &Road, hub: [f64; 2], direction: [f64; 2]) -> f64 {
         let depth = |length: f64| road.height(hub[0] + length * direction[0]) - hub[1] - length * direction[1];
         let (mut free, mut pushed) = ((1.0 - DEEPEST) * self.radius, self.radius);
@@ -79,8 +80,8 @@ impl Radial {
         if below <= 0.0 {
             return 0.0;
         }
-        // Secants, with the other end's depth halved as in the Illinois rule: exact at once where the road is straight, and
-        // still closing in at the step.
+        // Secant steps with the Illinois rule, which halves the depth at the retained end: exact in one step if the
+        // road is straight, and convergent at a step of the road.
         while pushed - free > EXACT && above > 0.0 {
             let between = free + (pushed - free) * above / (above + below);
             let found = depth(between);
@@ -102,7 +103,8 @@ mod tests {
     use super::*;
     use crate::axle::{Layout, Mount};
 
-    /// On the flat a spring at an angle is pushed in by `r - (r - d) / cos`; by Simpson's rule over its angle.
+    /// On flat ground a spring at an angle is compressed by `r - (r - d) / cos`. Simpson's rule integrates over the
+    /// angle.
     #[test]
     fn on_the_flat_the_deflection_comes_back() {
         let layout = Layout {
@@ -129,7 +131,7 @@ mod tests {
         }
     }
 
-    /// At a step the springs ahead push back; past it the tyre stands higher by the step.
+    /// Before a step the springs ahead push backwards; behind it the tyre stands higher by the step's height.
     #[test]
     fn a_step_pushes_back() {
         let layout = Layout {

@@ -4,7 +4,7 @@
 pub struct Random(u64);
 
 impl Random {
-    /// A stream of its own for each seed and purpose.
+    /// An independent stream for each seed and purpose.
     pub fn new(seed: u64, purpose: &str) -> Self {
         let salt = purpose.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |h, b| {
             (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3)

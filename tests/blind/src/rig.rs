@@ -7,11 +7,11 @@ use crate::hardware::Pad;
 use crate::integrate::step;
 use crate::programme::SweepRun;
 
-/// Samples a second of a record.
+/// Sampling rate of a record, Hz.
 pub const RATE: f64 = 1000.0;
-/// Steps of integration a sample.
+/// Integration steps per sample.
 const FINER: usize = 5;
-/// Silence before the sweep, s.
+/// Time at rest before the sweep, s.
 const RUN_IN: f64 = 0.5;
 /// Length of the tapers, s.
 const TAPER: f64 = 0.5;
@@ -26,11 +26,11 @@ pub struct Sweep {
     pub to: f64,
     /// s
     pub seconds: f64,
-    /// What drives the pad, where it is not ideal.
+    /// The actuator of the pad; `None` if it is ideal.
     pub pad: Option<Pad>,
 }
 
-/// Accelerations of the pad and of what carries sensors, m/s², one value a sample.
+/// Accelerations of the pad and of the masses with sensors, m/s², one value per sample.
 #[derive(Default)]
 pub struct Motion {
     pub pad: Vec<f64>,
@@ -42,7 +42,7 @@ pub struct Motion {
 }
 
 impl Sweep {
-    /// A sweep of a programme on a pad.
+    /// The pad's motion for a sweep of a programme.
     pub fn new(run: &SweepRun, pad: Option<Pad>) -> Self {
         Self {
             peak_velocity: f64::from(run.level) / 1000.0,
@@ -68,7 +68,7 @@ impl Sweep {
         window * self.peak_velocity / omega * wave
     }
 
-    /// Height, velocity and acceleration of the pad by differences.
+    /// Height, m, velocity, m/s, and acceleration, m/s², of the pad, by differences.
     fn pad(&self, t: f64) -> [f64; 3] {
         let d = 1e-4;
         let (before, now, after) = (self.height(t - d), self.height(t), self.height(t + d));
@@ -79,13 +79,14 @@ impl Sweep {
         ]
     }
 
-    /// How long the record is, in samples.
+    /// Length of the record, in samples.
     pub fn samples(&self) -> usize {
         ((self.seconds + 2.0 * RUN_IN) * RATE) as usize + 1
     }
 }
 
-/// What an actuator makes of a unit sine of slowly growing frequency. The harmonics are shares of acceleration.
+/// Response of an actuator to a sine of unit amplitude and slowly growing frequency. Harmonics are shares of the
+/// acceleration.
 fn real(pad: Pad, omega: f64, phase: f64) -> f64 {
     let (gain, lag) = pad.response(omega);
     let harmonic = |(n, (share, offset)): (i32, (f64, f64))| {
@@ -95,7 +96,7 @@ fn real(pad: Pad, omega: f64, phase: f64) -> f64 {
     gain * ((phase + lag).sin() + harmonics)
 }
 
-/// Runs a corner over a sweep.
+/// Simulates a corner on a sweep.
 pub fn run(corner: &Corner, sweep: &Sweep) -> Motion {
     let h = 1.0 / (RATE * FINER as f64);
     let total = sweep.samples() as f64 / RATE;

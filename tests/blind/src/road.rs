@@ -1,6 +1,6 @@
 //! The road of the track: a cleat.
 
-/// A cleat: flat, a vertical step, a descent and a smooth return, sampled every millimetre.
+/// A cleat, sampled every millimetre: flat road, a vertical step, a descent and a smooth return.
 pub struct Road {
     pub z: Vec<f64>,
     pub slope: Vec<f64>,
@@ -51,14 +51,15 @@ impl Road {
         Self { z, slope }
     }
 
-    /// Height at a place, m.
+    /// Height of the road at a position, m.
     pub fn height(&self, x: f64) -> f64 {
         let place = (x / SPACING).clamp(0.0, (self.z.len() - 2) as f64);
         let i = place as usize;
         self.z[i] + (self.z[i + 1] - self.z[i]) * (place - i as f64)
     }
 
-    /// The highest point between two places, m: the top of the step, or an end where it is not between them.
+    /// The greatest height between two positions, m: the top of the step, or that at an end if the step is not between
+    /// them.
     pub fn highest(&self, from: f64, to: f64) -> f64 {
         let top = (START / SPACING) as usize + 1;
         if (from..=to).contains(&(top as f64 * SPACING)) {

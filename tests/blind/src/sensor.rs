@@ -1,4 +1,4 @@
-//! What an accelerometer makes of a motion: gain error, delay, noise and quantisation, and the flaws of hardware.
+//! The signal of an accelerometer: gain error, delay, noise, quantisation and the flaws of hardware.
 
 use std::f64::consts::TAU;
 
@@ -9,7 +9,7 @@ use crate::random::Random;
 
 /// Frequency of the mains, Hz.
 const MAINS: f64 = 50.0;
-/// Time in which a zero wanders by what [`Hardware::drift`] says, s.
+/// Time to which the drift of [`Hardware::drift`] refers, s.
 const WANDERING: f64 = 30.0;
 
 /// One accelerometer.
@@ -19,17 +19,17 @@ pub struct Sensor {
     delay: f64,
     noise: f64,
     step: f64,
-    /// Outside the catalogue: where an amplifier begins to saturate, m/s².
+    /// Outside the catalogue: acceleration at which the amplifier begins to saturate, m/s².
     soft_limit: f64,
     curve: Option<Curve>,
-    /// m/s² in [`WANDERING`].
+    /// Drift of the zero in [`WANDERING`], m/s².
     drift: f64,
-    /// m/s².
+    /// Amplitude of the hum, m/s².
     hum: f64,
 }
 
 impl Sensor {
-    /// A sensor with a gain error of its own (`systematic` is its standard deviation) and what is hidden in it.
+    /// A sensor with a random gain error (`systematic` is its standard deviation) and its hidden effects.
     pub fn new(
         name: &str,
         location: &str,
@@ -58,7 +58,7 @@ impl Sensor {
         }
     }
 
-    /// The record of a motion sampled at `rate` Hz, by the seed of the campaign and the name of the run.
+    /// The record of a motion that is sampled at `rate` Hz. `seed` and `run` seed its noise.
     pub fn record(&self, motion: &[f64], rate: f64, seed: u64, run: u32) -> Vec<f64> {
         let stream = |what: &str| Random::new(seed, &format!("{what} {} in {run}", self.name));
         let mut random = stream("noise of");
@@ -83,7 +83,8 @@ impl Sensor {
             .collect()
     }
 
-    /// The wandering zero, a random walk, and the hum with a third of a third harmonic, m/s², sample by sample.
+    /// Drift of the zero (a random walk) and hum (with a third harmonic of a third of its amplitude), m/s², for each
+    /// sample.
     fn beside(&self, rate: f64, mut random: Random) -> impl FnMut(usize) -> f64 {
         let (drift, hum) = (self.drift, self.hum);
         let phases = [(); 2].map(|()| random.uniform(0.0, TAU));

@@ -1,5 +1,5 @@
-//! How much of what is hidden no parameter of the engineer's model can imitate, by the generator's own equations: a
-//! measure of what can be found at all, which knows nothing of any verdict.
+//! The part of the hidden effects' response that no parameter of the engineer's model can reproduce, by the generator's
+//! own equations. It measures how well the effects can be found at all, independently of any answer.
 
 use crate::axle::Axle;
 use crate::campaign::{self, Plan};
@@ -8,13 +8,13 @@ use crate::corner::Corner;
 use crate::hidden::Laws;
 use crate::rig::{self, Sweep};
 
-/// Every so many-th sample is looked at.
+/// Only every ninth sample is used, to save time.
 const STEP: usize = 9;
-/// Share of a parameter by which it is changed for its derivative.
+/// Relative step of the difference quotient with respect to a parameter.
 const CHANGE: f64 = 0.01;
 
-/// RMS over the fitted runs of what is hidden, in units of the sensors' noise, less the best combination of what
-/// changes of the parameters and of the sensors' gains would do.
+/// RMS over the fitted runs of the hidden effects' response, in units of the sensors' noise, less its least-squares
+/// projection onto changes of the parameters and of the sensors' gains.
 pub fn strength(plan: &Plan, real: &Axle, known: &Axle) -> f64 {
     if plan.effects.is_empty() {
         return 0.0;
@@ -43,7 +43,7 @@ pub fn strength(plan: &Plan, real: &Axle, known: &Axle) -> f64 {
     (left.iter().map(|x| x * x).sum::<f64>() / left.len() as f64).sqrt()
 }
 
-/// What the sensors of the fitted runs would show, in units of their noise.
+/// The signals of the sensors in the fitted runs, in units of their noise.
 fn signals(plan: &Plan, axle: &Axle, laws: &Laws) -> Vec<Vec<f64>> {
     let corner = Corner { axle, laws };
     let programme = &plan.programme;
@@ -77,7 +77,7 @@ fn difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
     a.iter().zip(b).map(of_signal).collect()
 }
 
-/// Takes out of `from` whatever the columns span (modified Gram-Schmidt).
+/// Removes from `from` its projection onto the span of the columns (modified Gram-Schmidt).
 fn remove(from: &mut [f64], mut columns: Vec<Vec<f64>>) {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     for k in 0..columns.len() {

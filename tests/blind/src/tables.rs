@@ -1,4 +1,4 @@
-//! What the answers to the matrix come to, in Markdown.
+//! Statistics of the answers to the matrix, in Markdown.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use crate::matrix::{Kind, LITTLE};
 use crate::outcome::{Outcome, Place};
 
-/// What stands clear of noise and calibration: below this the data hardly hold the effect.
+/// Least separable strength, in units of the noise. Below it the data hardly show the effect.
 const SEPARABLE: f64 = 0.5;
 /// Bins of the stated probability.
 const BINS: [f64; 7] = [0.0, 0.5, 0.8, 0.9, 0.95, 0.99, 1.0];
@@ -24,43 +24,43 @@ impl Outcome {
         self.is("found") || self.is("class")
     }
 
-    /// All that is hidden is named and placed, and nothing beside.
+    /// Whether the answer names all hidden effects at their places, and no other.
     pub fn is_right(&self) -> bool {
         let named = |truth: &Place| self.named.iter().any(|own| truth.is_named_by(own));
         self.is("found") && self.named.len() == self.truth.len() && self.truth.iter().all(named)
     }
 
-    /// All that is named is of the family that is hidden.
+    /// Whether each named effect is of the hidden family.
     fn is_of_family(&self) -> bool {
         self.is("found") && !self.named.is_empty() && !self.is_wrong()
     }
 
-    /// Nothing is named, but the place is where the law is.
+    /// Whether nothing is named, but the place is right.
     fn is_unknown_there(&self) -> bool {
         let learned = self.learned.iter().map(|(at, _)| at);
         let mut places = learned.chain(&self.places).take(1);
         self.is("unknown") && places.any(|at| self.truth.iter().any(|truth| truth.at == *at))
     }
 
-    /// The same, wherever it was placed.
+    /// Whether the answer names all hidden effects and no other, at any places.
     fn is_right_by_name(&self) -> bool {
         let named = |truth: &Place| self.named.iter().any(|own| truth.has_name_of(own));
         self.is("found") && self.named.len() == self.truth.len() && self.truth.iter().all(named)
     }
 
-    /// A class of which one is what is hidden.
+    /// Whether the answer is a class that contains the hidden effect.
     fn is_class_with_it(&self) -> bool {
         let holds = |truth: &Place| self.named.iter().chain(&self.alike).any(|own| truth.is_named_by(own));
         self.is("class") && !self.truth.is_empty() && self.truth.iter().all(holds)
     }
 
-    /// Names that are not hidden, or a class without what is.
+    /// Whether the answer names an effect that is not hidden, or is a class without the hidden one.
     fn is_wrong(&self) -> bool {
         let is_hidden = |own: &Place| self.truth.iter().any(|truth| truth.is_named_by(own));
         (self.is("found") && !self.named.iter().all(is_hidden)) || (self.is("class") && !self.is_class_with_it())
     }
 
-    /// Whether the answer is one that may be given.
+    /// Whether the answer is acceptable.
     fn is_true(&self) -> bool {
         match self.verdict.as_str() {
             "found" if self.kind == Kind::OtherLaw => self.is_of_family(),
@@ -87,7 +87,7 @@ pub fn tables(outcomes: &[Outcome]) -> String {
     table.text + &reliability(outcomes) + &by_effect(outcomes) + &misses(outcomes)
 }
 
-/// Rows of what, how many cases, and the result.
+/// Rows of statistic, number of cases and result.
 struct Table {
     text: String,
 }
@@ -105,7 +105,7 @@ impl Table {
         }
     }
 
-    /// How many of the cases are as wanted.
+    /// Number and share of the cases that meet a condition.
     fn count(&mut self, what: &str, cases: &[&Outcome], wanted: impl Fn(&Outcome) -> bool) {
         let count = cases.iter().filter(|outcome| wanted(outcome)).count();
         self.row(what, cases.len(), &share(count, cases.len()));
@@ -204,7 +204,7 @@ fn other_laws(outcomes: &[Outcome], table: &mut Table) {
     learned("laws of another form", &all, table);
 }
 
-/// What the laws close that were learned.
+/// Share of the excess gap that the learned laws close.
 fn learned(what: &str, outcomes: &[&Outcome], table: &mut Table) {
     let closed = outcomes.iter().filter_map(|outcome| Some(outcome.learned.as_ref()?.1));
     let closed: Vec<f64> = closed.collect();
@@ -252,7 +252,7 @@ fn seconds(outcomes: &[Outcome], table: &mut Table) {
     table.count("searches that failed", &all, |outcome| outcome.is("failed"));
 }
 
-/// How often answers are right that are stated at a probability.
+/// How often answers are right, by the probability that they state.
 fn reliability(outcomes: &[Outcome]) -> String {
     let mut text = String::from("\n| stated probability | answers | right | mean stated |\n|---|---|---|---|\n");
     let stated: Vec<(f64, bool)> = outcomes

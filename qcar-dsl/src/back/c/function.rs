@@ -1,9 +1,9 @@
-//! A straight-line program as C: one operation a line, a result stored where it is computed.
+//! A straight-line program as C: one operation in each line; a result is stored where it is computed.
 
 use std::collections::BTreeSet;
 
 use crate::back::straight::{
-    FREQUENCIES, Function, Language, Leaf, Local, Locals, Names, Pieces, Straight, Written, usual_name,
+    FREQUENCIES, Function, Language, Leaf, Local, Locals, Names, Pieces, ProgramText, Straight, usual_name,
 };
 use crate::expr;
 use crate::program::Value;
@@ -14,9 +14,9 @@ use super::text::{self, comment, remark};
 
 /// The functions of a model, printed.
 pub struct Functions {
-    /// For the header.
+    /// Declarations for the header.
     pub declarations: String,
-    /// For the source.
+    /// Definitions for the source file.
     pub definitions: String,
 }
 
@@ -39,7 +39,7 @@ impl Functions {
     }
 }
 
-/// What stands in the results of a frequency response; those of other functions are places of vectors or nonzeros.
+/// The meaning of the results of a frequency response. Those of other functions are entries of vectors or nonzeros.
 fn rows(function: &Function) -> String {
     match (function.is_response(), function.name.ends_with("_jacobian")) {
         (true, false) => format!("\nIn out: {}.", function.results.join(", ")),
@@ -48,10 +48,10 @@ fn rows(function: &Function) -> String {
     }
 }
 
-/// How a function is called.
+/// The signature of a function.
 struct Signature<'a> {
     function: &'a Function<'a>,
-    /// The name of the model, before that of the function.
+    /// The name of the model, which prefixes that of the function.
     model: &'a str,
 }
 
@@ -108,12 +108,12 @@ impl<'a> Signature<'a> {
     }
 }
 
-/// What an argument is called inside of a function.
+/// The name of an argument inside of a function.
 fn passed(argument: &'static str) -> &'static str {
     if argument == FREQUENCIES { "omega" } else { argument }
 }
 
-/// Prints one piece of a program, which may be all of it.
+/// Prints one piece of a program; a short program has one piece.
 struct Printer<'a> {
     signature: &'a Signature<'a>,
     straight: &'a Straight<'a>,
@@ -149,7 +149,7 @@ impl<'a> Printer<'a> {
         format!("{heading}\n{{\n{}}}\n\n", lines.collect::<String>())
     }
 
-    /// What it reads and takes, what it computes, and what it does not need of its arguments.
+    /// The values that it reads or inherits, those that it computes, and the arguments that it does not use.
     fn body(&self) -> Vec<String> {
         let (cut, piece) = (self.cut, self.piece);
         let arguments = self.signature.function.arguments;
@@ -176,7 +176,7 @@ impl<'a> Printer<'a> {
             .collect()
     }
 
-    /// The arguments that the piece does not need.
+    /// The arguments that the piece does not use.
     fn unused(&self, read: BTreeSet<&str>) -> Vec<&'static str> {
         let (cut, piece) = (self.cut, self.piece);
         let computed = &cut.pieces[piece];
@@ -196,7 +196,7 @@ impl<'a> Printer<'a> {
         unused
     }
 
-    /// The statements that compute a value, and those that put it where it is wanted.
+    /// The statements that compute a value and store it.
     fn compute(&self, value: Value) -> Vec<String> {
         let name = self.locals.name(value);
         let mut statements = vec![format!("const double {name} = {};", self.written().operation(value))];
@@ -213,8 +213,8 @@ impl<'a> Printer<'a> {
         format!("out[{place}] = {};{}", self.written().operand(value), remark(result))
     }
 
-    fn written(&self) -> Written<'_> {
-        Written {
+    fn written(&self) -> ProgramText<'_> {
+        ProgramText {
             language: &C,
             program: self.cut.program,
             locals: &self.locals,
@@ -222,7 +222,7 @@ impl<'a> Printer<'a> {
     }
 }
 
-/// How C writes.
+/// The syntax of C.
 struct C;
 
 impl Language for C {
@@ -262,7 +262,7 @@ impl Language for C {
     }
 }
 
-/// Keywords of C and C++, and what a function refers to beside its own variables.
+/// Keywords of C and C++, and names that a function uses in addition to its own variables.
 const RESERVED: &[&str] = &[
     "NAN",
     "INFINITY",

@@ -106,7 +106,7 @@ fn parameters(about: &About) -> String {
     )
 }
 
-/// An enumeration of the places of a vector; C knows none without members.
+/// An enumeration of the positions in a vector; empty without entries, since C has no empty enumeration.
 fn places<'a>(about: &About, vector: &str, what: &str, names: impl Iterator<Item = (&'a str, &'a str)>) -> String {
     let model = about.name.to_uppercase();
     let line = |(place, (name, unit)): (usize, (&str, &str))| {

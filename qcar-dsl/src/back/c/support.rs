@@ -11,7 +11,7 @@ pub const SMALLER: &str = "smaller_of";
 pub const LARGER: &str = "larger_of";
 /// A curve through points.
 pub const TABLE: &str = "curve_at";
-/// The functions that any of these programs uses.
+/// The helper functions that at least one of these programs uses.
 pub fn used<'a>(programs: impl Iterator<Item = &'a Program> + Clone) -> String {
     let any = |is: fn(&Op) -> bool| programs.clone().any(|program| program.ops.iter().any(is));
     let parts = [

@@ -1,6 +1,6 @@
-//! Texts of a model where C expects a comment, a string or a number.
+//! Texts of a model as comments, strings and numbers of C.
 
-/// A text as a comment of its own lines.
+/// A text as a comment on separate lines.
 pub fn comment(text: &str) -> String {
     let text = harmless(text);
     let mut lines = text.lines().map(str::trim_end);
@@ -20,13 +20,13 @@ pub fn remark(text: &str) -> String {
     }
 }
 
-/// Nothing in it begins or ends a comment, and nothing of it is a link of Rust's documentation.
+/// The text without marks that begin or end a comment, and without the links of Rust's documentation.
 fn harmless(text: &str) -> String {
     let plain = text.replace("[`", "").replace("`]", "").replace('`', "");
     plain.replace("*/", "* /").replace("/*", "/ *")
 }
 
-/// A string; a question mark cannot begin a trigraph, and no line is continued.
+/// A string literal, in which no question mark begins a trigraph and no backslash continues a line.
 pub fn string(text: &str) -> String {
     let escaped = text.chars().map(|letter| match letter {
         '"' | '\\' | '?' => format!("\\{letter}"),
@@ -37,7 +37,7 @@ pub fn string(text: &str) -> String {
     format!("\"{}\"", escaped.collect::<String>())
 }
 
-/// A number, to every digit; a negative one in parentheses, since `--` is an operator.
+/// A number with all its digits; a negative one is in parentheses, since `--` is an operator.
 pub fn number(number: f64) -> String {
     match number {
         _ if number.is_nan() => "NAN".into(),

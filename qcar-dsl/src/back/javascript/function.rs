@@ -1,8 +1,9 @@
-//! A straight-line program as a function of JavaScript: one operation a line, a result stored where it is computed.
+//! A straight-line program as a function of JavaScript: one operation in each line; a result is stored where it is
+//! computed.
 
 use super::RESERVED;
 use crate::back::straight::{
-    FREQUENCIES, Function, Language, Leaf, Locals, Names, Pieces, Straight, Written, usual_name,
+    FREQUENCIES, Function, Language, Leaf, Locals, Names, Pieces, ProgramText, Straight, usual_name,
 };
 use crate::expr;
 use crate::program::Value;
@@ -14,7 +15,7 @@ pub fn text(function: &Function, straight: &Straight) -> String {
     let read = |leaf: Leaf| straight.local(leaf, function.arguments);
     let names = Names::beside(RESERVED.iter().copied().chain(arguments.iter().copied()));
     let locals = Locals::new(function, &cut, 0, names, &read);
-    let written = Written {
+    let written = ProgramText {
         language: &JavaScript,
         program: function.program,
         locals: &locals,
@@ -44,7 +45,7 @@ pub fn text(function: &Function, straight: &Straight) -> String {
     )
 }
 
-/// What an argument is called: a name that no leaf of the program has.
+/// The name of an argument, which no leaf of the program has.
 fn passed(argument: &str) -> &str {
     if argument == FREQUENCIES {
         "angular_frequency"
@@ -53,11 +54,11 @@ fn passed(argument: &str) -> &str {
     }
 }
 
-/// How JavaScript writes.
+/// The syntax of JavaScript.
 struct JavaScript;
 
 impl Language for JavaScript {
-    /// A negative number in parentheses, since `--` is an operator.
+    /// A negative number is in parentheses, since `--` is an operator.
     fn number(&self, number: f64) -> String {
         match number {
             _ if number.is_nan() => "NaN".into(),

@@ -1,6 +1,6 @@
 //! A straight-line program as statements of MATLAB, and their helper functions.
 
-use crate::back::straight::{Language, Leaf, Locals, Pieces, Written};
+use crate::back::straight::{Language, Leaf, Locals, Pieces, ProgramText};
 use crate::program::{Op, Program, Value};
 
 /// A program in one piece, with the names of its values.
@@ -10,7 +10,8 @@ pub struct Statements<'a> {
 }
 
 impl Statements<'_> {
-    /// All statements; `read` says where a leaf is read, and `target` where a result goes and what it is.
+    /// All statements. `read` gives the expression from which a leaf is read; `target` gives the place where a result
+    /// is stored, and its name.
     pub fn all(&self, read: &dyn Fn(Leaf) -> String, target: &dyn Fn(usize) -> (String, String)) -> String {
         let leaves = self.cut.read(0).into_iter();
         let leaves = leaves.map(|(leaf, value)| format!("{} = {};", self.locals.name(value), read(leaf)));
@@ -28,8 +29,8 @@ impl Statements<'_> {
         lines.map(|statement| format!("    {statement}\n")).collect()
     }
 
-    fn written(&self) -> Written<'_> {
-        Written {
+    fn written(&self) -> ProgramText<'_> {
+        ProgramText {
             language: &Matlab,
             program: self.cut.program,
             locals: self.locals,
@@ -37,11 +38,11 @@ impl Statements<'_> {
     }
 }
 
-/// How MATLAB writes.
+/// The syntax of MATLAB.
 struct Matlab;
 
 impl Language for Matlab {
-    /// A negative number in parentheses, since `^` binds more tightly than `-`.
+    /// A negative number is in parentheses, since `^` binds more tightly than `-`.
     fn number(&self, number: f64) -> String {
         match number {
             _ if number.is_nan() => "NaN".into(),

@@ -1,13 +1,13 @@
-//! How Modelica writes operations, texts and units.
+//! Operations, texts and units in the syntax of Modelica.
 
 use crate::back::straight::Language;
 use crate::units::Unit;
 
-/// The language.
+/// The syntax of Modelica.
 pub struct Modelica;
 
 impl Language for Modelica {
-    /// A negative number in parentheses: the grammar has no two operators in a row.
+    /// A negative number is in parentheses, since the grammar does not allow two operators in a row.
     fn number(&self, number: f64) -> String {
         match number {
             _ if !number.is_finite() => format!("({}.0/0.0)", if number.is_nan() { 0.0 } else { number.signum() }),
@@ -62,7 +62,7 @@ pub fn string(text: &str) -> String {
     )
 }
 
-/// A unit as Modelica writes it: `N.s/m`, `m/s2`; empty where its powers are not whole.
+/// A unit in Modelica's notation: `N.s/m`, `m/s2`; empty if its powers are not whole.
 pub fn unit(unit: Unit) -> String {
     if unit.sixths.iter().any(|sixths| sixths % 6 != 0) {
         return String::new();
@@ -70,7 +70,7 @@ pub fn unit(unit: Unit) -> String {
     unit.to_string().replace(' ', ".").replace('^', "")
 }
 
-/// Keywords, and functions that are used.
+/// Keywords, and functions that the model uses.
 pub const RESERVED: &[&str] = &[
     "abs",
     "algorithm",

@@ -1,4 +1,4 @@
-//! `static ABOUT`: what the runtime shows of a generated model.
+//! `static ABOUT`: the description of a generated model.
 
 use qcar_model::{
     About, Channel, Clock, ContactAxis, Entry, Excitation, Input, InputKind, Link, Mass, Output, Parameter,
@@ -54,7 +54,7 @@ pub static ABOUT: seam::About = seam::About {{
     .join("\n")
 }
 
-/// A private array, one item a line.
+/// A private array, with one item in each line.
 fn array(name: &str, kind: &str, items: Vec<String>) -> String {
     table(
         "",
@@ -64,7 +64,7 @@ fn array(name: &str, kind: &str, items: Vec<String>) -> String {
     )
 }
 
-/// An array, one item a line; the items bring their own commas.
+/// An array, with one item in each line; the items include their commas.
 fn table(front: &str, name: &str, kind: &str, items: Vec<String>) -> String {
     let lines: String = items.iter().map(|item| format!("    {item}\n")).collect();
     format!("{front}static {name}: [{kind}; {}] = [\n{lines}];\n", items.len())

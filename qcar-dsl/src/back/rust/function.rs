@@ -1,9 +1,9 @@
-//! A straight-line program as Rust: one operation a line, a result stored where it is computed.
+//! A straight-line program as Rust: one operation in each line; a result is stored where it is computed.
 
 use std::collections::BTreeSet;
 
 use crate::back::straight::{
-    FREQUENCIES, Function, Language, Leaf, Local, Locals, Pieces, Straight, Written, computed,
+    FREQUENCIES, Function, Language, Leaf, Local, Locals, Pieces, ProgramText, Straight, computed,
 };
 use crate::expr;
 use crate::program::Value;
@@ -30,7 +30,7 @@ pub fn functions(compiled: &Compiled) -> Vec<String> {
     all.map(|(own, width)| written(&straight, own, width)).collect()
 }
 
-/// The functions that are there for several parameter sets at once, too.
+/// The functions that also exist for several parameter sets at once.
 const SETS: [&str; 6] = [
     "prepare",
     "derivative",
@@ -83,14 +83,14 @@ fn kind(argument: &str, width: Width) -> &'static str {
     }
 }
 
-/// Operations of a piece over several sets. Where a loop writes to some 250 rows, LLVM takes it for not worth vectors, and eight sets
-/// take as long as one after the other; with pieces of 30 to 100 operations they take a third.
+/// Number of operations in a piece over several sets. LLVM does not vectorise a loop that writes to about 250 rows, so
+/// eight sets take eight times as long as one. With pieces of 30 to 100 operations they take a third of that.
 const OF_SETS: usize = 60;
 
-/// How much a function computes in a call. What is more than one is a loop that the optimiser vectorises.
+/// How many points or sets a function computes in a call. More than one are a loop, which the optimiser vectorises.
 #[derive(Clone, Copy, PartialEq)]
 enum Width {
-    /// One of everything.
+    /// One point of one parameter set.
     One,
     /// A block of lines of a frequency response.
     Lines,
@@ -103,12 +103,12 @@ impl Width {
         self != Width::One
     }
 
-    /// Whether an argument has another value for each turn of the loop.
+    /// True if an argument has another value in each pass of the loop.
     fn varies(self, argument: &str) -> bool {
         self == Width::Sets || argument == FREQUENCIES
     }
 
-    /// What a turn is, for a count of operations.
+    /// The name of a pass of the loop, for the count of operations.
     fn turn(self) -> &'static str {
         match self {
             Width::One => "",
@@ -118,20 +118,20 @@ impl Width {
     }
 }
 
-/// How a program becomes a function.
+/// The signature of a function.
 struct Signature<'a> {
     function: &'a Function<'a>,
     /// Its doc comment, line by line; the operation count is added.
     doc: Vec<String>,
     /// Names and types of the arguments that it may read, `("p", "&[f64; 19]")`.
     arguments: Vec<(&'static str, &'static str)>,
-    /// Where a leaf is read, and what a reviewer calls it.
+    /// Where a leaf is read, and its name.
     leaf: &'a dyn Fn(Leaf) -> Local,
-    /// How much at once.
+    /// How many points or sets the function computes.
     width: Width,
 }
 
-/// The Rust text of a program: one function, or one that calls several in turn.
+/// The Rust text of a program: one function, or a function that calls one for each piece.
 fn function(signature: &Signature) -> String {
     let cut = match signature.width {
         Width::Sets => Pieces::cut_to(signature.function.program, OF_SETS),
@@ -185,9 +185,9 @@ fn heading(name: &str, mut arguments: Vec<String>, lines: bool, results: usize) 
     format!("pub fn {name}({}) {{\n", arguments.join(", "))
 }
 
-/// The code over lines is inlined into one function for each instruction set, as loops one after the other, and what
-/// runs thousands of times in a ride into what asks for it; any other piece stays a function of its own, since inlined
-/// again they would be as long as the whole.
+/// The `inline` attribute. Code over several lines is inlined into one function for each instruction set, as one loop
+/// after another. Functions that run thousands of times in a ride are inlined into their callers. Any other piece stays
+/// a separate function: inlined, the pieces would again be as long as the whole program.
 fn inline(signature: &Signature, whole: bool) -> &'static str {
     match (signature.width.is_wide(), whole) {
         (true, _) => "#[inline(always)]\n",
@@ -201,7 +201,7 @@ fn array(lines: bool, length: usize) -> String {
     format!("[{}; {length}]", if lines { "[f64; LINES]" } else { "f64" })
 }
 
-/// Prints one piece of a program, which may be all of it.
+/// Prints one piece of a program; a short program has one piece.
 struct Printer<'a> {
     signature: &'a Signature<'a>,
     cut: &'a Pieces<'a>,
@@ -240,7 +240,7 @@ impl<'a> Printer<'a> {
             + &self.body()
     }
 
-    /// The arguments; those that the piece does not read have an underscore in front.
+    /// The arguments; those that the piece does not read begin with an underscore.
     fn arguments(&self) -> Vec<String> {
         let read: BTreeSet<&str> = self.leaves().into_iter().map(|(local, _)| local.argument).collect();
         let underscore = |name: &str| if read.contains(name) { "" } else { "_" };
@@ -302,12 +302,12 @@ impl<'a> Printer<'a> {
         }
     }
 
-    /// The index of the line or the set, where there are several.
+    /// The index of the line or set; empty if there is only one.
     fn line(&self) -> &'static str {
         if self.signature.width.is_wide() { "[line]" } else { "" }
     }
 
-    /// The statement that computes a value, and those that put it where it is wanted.
+    /// The statements that compute a value and store it.
     fn compute(&self, value: Value) -> Vec<String> {
         let mut statements = vec![format!(
             "let {} = {};",
@@ -341,8 +341,8 @@ impl<'a> Printer<'a> {
         self.locals.name(value)
     }
 
-    fn written(&self) -> Written<'_> {
-        Written {
+    fn written(&self) -> ProgramText<'_> {
+        ProgramText {
             language: &Rust,
             program: self.cut.program,
             locals: &self.locals,
@@ -350,7 +350,7 @@ impl<'a> Printer<'a> {
     }
 }
 
-/// How Rust writes.
+/// The syntax of Rust.
 struct Rust;
 
 impl Language for Rust {
@@ -383,7 +383,7 @@ impl Language for Rust {
         format!("if {test} > 0.0 {{ {a} }} else {{ {b} }}")
     }
 
-    /// Each row from a line of its own on.
+    /// Each row begins on a line of its own.
     fn table(&self, order: u8, x: &str, rows: [Vec<String>; 3]) -> String {
         let row = |entries: Vec<String>| {
             let lines: Vec<String> = entries.chunks(ENTRIES).map(|line| line.join(", ")).collect();
@@ -393,10 +393,10 @@ impl Language for Rust {
     }
 }
 
-/// How many points of a table stand on a line.
+/// Number of points of a table in one line.
 const ENTRIES: usize = 8;
 
-/// What interpolates at run time.
+/// The function that interpolates at run time.
 const TABLE: &str = "::qcar_runtime::generated::table";
 
 fn indent(statements: &[String], depth: usize) -> String {

@@ -2,7 +2,7 @@
 
 use crate::back::straight::Names;
 
-/// What a function refers to beside its own variables.
+/// Names that a function uses in addition to its own variables.
 const RESERVED: &[&str] = &[
     "CONSTANTS",
     "INPUTS",
@@ -23,7 +23,7 @@ pub fn names(arguments: &[&'static str]) -> Names {
     Names::beside(used.copied())
 }
 
-/// A name that can stand where Rust expects an identifier of ours, such as a field.
+/// A name as a Rust identifier, such as a field; keywords get an underscore.
 pub fn identifier(name: &str) -> String {
     if is_keyword(name) {
         format!("{name}_")

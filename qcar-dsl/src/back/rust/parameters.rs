@@ -57,7 +57,7 @@ impl Parameters {{
     ) + &defaults(parameters).unwrap_or_default()
 }
 
-/// `impl Default`, where the model has a value for every parameter.
+/// `impl Default`; `None` if a parameter of the model has no default.
 fn defaults(parameters: &[Parameter]) -> Option<String> {
     let assigned = parameters.iter().map(|parameter| {
         let value = default(parameter, parameters)?;
@@ -77,7 +77,7 @@ impl ::std::default::Default for Parameters {{
     ))
 }
 
-/// The value of the model file: its own, or that of the parameter which it follows.
+/// The default in the model file: a value, or that of the parameter to which it refers.
 fn default(parameter: &Parameter, all: &[Parameter]) -> Option<f64> {
     match parameter.default {
         Default::None => None,

@@ -7,7 +7,7 @@ use crate::program::schedule::Compiled;
 
 use super::names::camel;
 
-/// The model's type and its implementation of the seam.
+/// The model's type and its implementation of the trait.
 pub fn implementation(compiled: &Compiled) -> String {
     let about = &compiled.about;
     let name = camel(&about.name);
@@ -108,7 +108,7 @@ const CONSTANTS: &str = "[seam::Lanes; CONSTANTS]";
 const STATES: &str = "[seam::Lanes; STATES]";
 const INPUTS: &str = "[seam::Lanes; INPUTS]";
 
-/// The functions of several parameter sets, of which the runtime compiles each once for each instruction set.
+/// The functions of several parameter sets; the runtime compiles each of them once for each instruction set.
 pub fn sets(about: &About) -> String {
     let of_model: [(&str, &[&str], usize); 4] = [
         ("prepare", &[PARAMETERS], about.constants),

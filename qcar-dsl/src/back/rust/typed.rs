@@ -1,10 +1,10 @@
-//! The public face of a generated model: fixed sizes, nalgebra's types.
+//! The public interface of a generated model: fixed sizes and nalgebra's types.
 
 use qcar_model::{About, Matrix};
 
 use crate::program::schedule::Compiled;
 
-/// Sizes, and the places of states, inputs and outputs.
+/// Sizes, and the positions of states, inputs and outputs.
 pub fn sizes(about: &About) -> String {
     let size = |name: &str, what: &str, size: usize| {
         format!("/// How many {what} there are.\npub const {name}: usize = {size};\n")

@@ -6,7 +6,7 @@ use crate::program::schedule::Compiled;
 
 use super::matrices::entries;
 
-/// How many terms stand in a line of an equation.
+/// Number of terms in a line of an equation.
 const TERMS_A_LINE: usize = 3;
 
 /// A whole document.
@@ -45,7 +45,7 @@ fn align(equations: &[Equation]) -> String {
     format!("\\begin{{align*}}\n{}\n\\end{{align*}}\n", written.join(" \\\\\n"))
 }
 
-/// An equation over as many lines as it needs.
+/// An equation in as many lines as it needs.
 fn equation(equation: &Equation) -> String {
     let lines: Vec<String> = equation
         .right

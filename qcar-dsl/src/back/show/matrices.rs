@@ -9,7 +9,7 @@ use crate::back::notation::{Notation, Writer};
 use crate::expr::Expr;
 use crate::program::schedule::Compiled;
 
-/// What the matrices are over, then their nonzeros row by row.
+/// The names of states, inputs and outputs, then the nonzeros of the matrices row by row.
 pub fn matrices(compiled: &Compiled) -> String {
     let about = &compiled.about;
     let mut text = format!(
@@ -47,7 +47,8 @@ pub fn matrices(compiled: &Compiled) -> String {
     text
 }
 
-/// The nonzeros of each matrix: where, what. An output that is the rate of a state has that state's rows.
+/// The nonzeros of each matrix: their position and their value. An output that is the rate of a state refers to the
+/// rows of that state.
 pub fn entries(compiled: &Compiled, notation: Notation) -> Vec<(Matrix, Vec<(String, String)>)> {
     let mut writer = Writer::new(&compiled.model, &compiled.graph, notation);
     named_quantities(&compiled.model)
@@ -116,7 +117,7 @@ struct SameRates(BTreeMap<Rate, usize>);
 
 impl SameRates {
     fn of(compiled: &Compiled) -> Self {
-        // Of several the first.
+        // Of states with the same rate, the first one counts.
         let states = (0..compiled.about.states.len()).rev();
         SameRates(
             states

@@ -1,13 +1,14 @@
-//! Kinks and jumps of the laws of a program: at a sign of |a|, of `sign(a)`, of min, of max, and of the test of a choice.
+//! Kinks and jumps of the laws of a program. They are where the argument of `abs` or `sign`, the difference of the
+//! arguments of `min` or `max`, or the test of a choice changes sign.
 //!
-//! A curve through points has kinks in its curvature only, which an integrator need not know.
+//! A curve through points jumps only in its second derivative, which does not disturb an integrator.
 
 use std::collections::BTreeSet;
 
 use crate::expr::Function;
 use crate::program::{Op, Program, Value};
 
-/// The values whose change of sign is a kink, as a program of their own: each once, in the order of the operations.
+/// A program that computes the values whose change of sign is a kink: each once, in the order of the operations.
 pub fn kinks(program: &Program) -> Program {
     let mut found = Program {
         ops: program.ops.clone(),
@@ -43,7 +44,7 @@ mod tests {
     use super::*;
     use crate::expr::Symbol;
 
-    /// |a| where a = k x, min(a, x), a choice by x, and tanh(x), which has no kink.
+    /// |a| with a = k x, min(a, x), a choice by x, and tanh(x), which has no kink.
     #[test]
     fn a_kink_is_where_a_law_bends() {
         let [k, x, a, size, least, chosen, smooth] = [0, 1, 2, 3, 4, 5, 6].map(Value);

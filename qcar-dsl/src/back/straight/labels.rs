@@ -1,6 +1,6 @@
-//! What a reviewer calls the values of a program: derived quantities, inertias, stretches and forces of links.
+//! Names of the values of a program: derived quantities, inertias, stretches and forces of links.
 //!
-//! A program keeps no names. They are found again by following the expressions that names stand for.
+//! A program stores no names. They are found by searching the program for the expressions that have names in the model.
 
 use std::collections::BTreeMap;
 
@@ -45,7 +45,7 @@ fn reciprocal_name(compiled: &Compiled, program: &Program, labels: &BTreeMap<Val
     }
 }
 
-/// What a reviewer calls each constant of a parameter set.
+/// Names of the constants of a parameter set.
 pub fn of_constants(compiled: &Compiled) -> Vec<String> {
     let prepare = &compiled.programs.prepare;
     let labels = labels(compiled, prepare);
@@ -56,7 +56,7 @@ pub fn of_constants(compiled: &Compiled) -> Vec<String> {
     prepare.outputs.iter().enumerate().map(name).collect()
 }
 
-/// Stiffness and damping of links whose text gives them as an expression: `k_spring`, `c_damper`.
+/// Stiffness and damping of links that the text gives as expressions: `k_spring`, `c_damper`.
 fn of_laws(compiled: &Compiled) -> Vec<(String, Expr)> {
     let links = compiled.model.links.iter();
     let terms = links.flat_map(|link| link.law.terms.iter().map(|term| (&link.name, *term)));
@@ -85,12 +85,12 @@ fn of_motion(compiled: &Compiled) -> Vec<(String, Expr)> {
         .collect()
 }
 
-/// Finds the value that an expression became.
+/// Finds the value of an expression in a program.
 struct Finder<'a> {
     compiled: &'a Compiled,
     program: &'a Program,
     found: BTreeMap<Expr, Option<Value>>,
-    /// What it finds in `prepare`, where the program reads prepared constants.
+    /// The finder of `prepare`, if the program reads prepared constants.
     prepare: Option<Box<Finder<'a>>>,
 }
 

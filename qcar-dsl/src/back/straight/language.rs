@@ -1,4 +1,4 @@
-//! An operation as text: what all languages write alike, and what each has of its own.
+//! An operation as text: the syntax that all languages share, and that of each language.
 
 use std::borrow::Cow;
 
@@ -6,9 +6,9 @@ use super::Locals;
 use crate::expr::Function;
 use crate::program::{Op, Program, Value};
 
-/// What a language writes in its own way. What has a default here is alike in MATLAB and Modelica.
+/// The syntax of a language. The default functions are those of MATLAB and Modelica.
 pub trait Language {
-    /// A number, to every digit.
+    /// A number with all its digits.
     fn number(&self, number: f64) -> String;
     /// A function of a value.
     fn call(&self, function: Function, a: &str) -> String {
@@ -26,13 +26,13 @@ pub trait Language {
     fn larger(&self, a: &str, b: &str) -> String {
         format!("max({a}, {b})")
     }
-    /// `a` where the test is above zero, else `b`.
+    /// `a` if the test is above zero, else `b`.
     fn choice(&self, test: &str, a: &str, b: &str) -> String;
-    /// The derivative of an order of a curve, from abscissae, ordinates and slopes.
+    /// A derivative of a curve at `x`; the rows are abscissae, ordinates and slopes.
     fn table(&self, order: u8, x: &str, rows: [Vec<String>; 3]) -> String;
 }
 
-/// What most languages call a function.
+/// The name of a function in most languages.
 pub fn usual_name(function: Function) -> &'static str {
     match function {
         Function::Abs => "abs",
@@ -48,18 +48,18 @@ pub fn usual_name(function: Function) -> &'static str {
     }
 }
 
-/// A program whose values have names, in a language.
-pub struct Written<'a> {
-    /// How it writes.
+/// A program whose values have names, to be printed in a language.
+pub struct ProgramText<'a> {
+    /// The language.
     pub language: &'a dyn Language,
-    /// What is written.
+    /// The program.
     pub program: &'a Program,
-    /// What values are called.
+    /// Names of the values.
     pub locals: &'a Locals,
 }
 
-impl Written<'_> {
-    /// A value where it is used: a number, or the variable that holds it.
+impl ProgramText<'_> {
+    /// A value as an operand: a number, or its variable.
     pub fn operand(&self, value: Value) -> Cow<'_, str> {
         match self.program.ops[value.0 as usize] {
             Op::Constant(number) => self.language.number(number).into(),
@@ -67,7 +67,7 @@ impl Written<'_> {
         }
     }
 
-    /// What computes a value.
+    /// The expression that computes a value.
     pub fn operation(&self, value: Value) -> String {
         let at = |v: Value| self.operand(v);
         match self.program.ops[value.0 as usize] {

@@ -1,19 +1,20 @@
-//! Names of local variables: each free of a language's keywords and of the others.
+//! Names of local variables, all different and none a keyword of the language.
 
 use super::{Function, Leaf, Local, Pieces};
 use crate::hash::{HashMap, HashSet};
 use crate::program::Value;
 
-/// The names that a function uses already.
+/// The names that a function already uses.
 pub struct Names(HashSet<String>);
 
 impl Names {
-    /// Names beside these.
+    /// Starts with these names.
     pub fn beside<'a>(used: impl IntoIterator<Item = &'a str>) -> Names {
         Names(used.into_iter().map(String::from).collect())
     }
 
-    /// The wished name, with as many `_` after it as make it free. The state of an element has a dot in its name.
+    /// Returns the name `wish`, with as many `_` appended as make it unique. Dots, as in the state of an element, are
+    /// replaced.
     pub fn take(&mut self, wish: &str) -> String {
         let mut name = wish.replace('.', "_");
         while self.0.contains(&name) {
@@ -32,7 +33,7 @@ pub struct Locals {
 }
 
 impl Locals {
-    /// Names the values of a piece; `read` says what a reviewer calls a leaf.
+    /// Names the values of a piece; `read` gives the name of a leaf.
     pub fn new(function: &Function, cut: &Pieces, piece: usize, mut free: Names, read: &dyn Fn(Leaf) -> Local) -> Self {
         let mut locals = Locals::default();
         for (leaf, value) in cut.read(piece) {
@@ -49,7 +50,7 @@ impl Locals {
         locals
     }
 
-    /// Gives a value its variable.
+    /// Sets the variable of a value.
     pub fn name_it(&mut self, value: Value, name: String) {
         self.names.insert(value, name);
     }

@@ -1,6 +1,7 @@
-//! A long program in pieces: the optimisers of compilers are superlinear in the length of a function.
+//! Splits a long program into pieces, since the time of a compiler's optimiser grows faster than the length of a
+//! function.
 //!
-//! What a later piece needs of an earlier one goes through an array, `kept`.
+//! Values that later pieces need are passed in an array, `kept`.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,34 +12,34 @@ use crate::program::{Op, Program, Value};
 /// The longest piece, in operations.
 const LONGEST: usize = 1000;
 
-/// A program and where it is cut.
+/// A program and its pieces.
 pub struct Pieces<'a> {
-    /// All of it.
+    /// The whole program.
     pub program: &'a Program,
     /// The computed values of each piece, in order; one piece at least.
     pub pieces: Vec<Vec<Value>>,
-    /// The values that one piece leaves to a later one, with their places in `kept`.
+    /// The values that a later piece needs, with their positions in `kept`.
     pub kept: BTreeMap<Value, usize>,
-    /// The results of the program to which each value goes.
+    /// The positions of each value among the results of the program.
     results: HashMap<Value, Vec<usize>>,
 }
 
-/// What a program reads from its arguments.
+/// A value that a program reads from its arguments.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub enum Leaf {
     /// A prepared constant.
     Prepared(u32),
-    /// A leaf of the equations.
+    /// A symbol of the equations.
     Symbol(Symbol),
 }
 
 impl<'a> Pieces<'a> {
-    /// Cuts a program into pieces of about the same length.
+    /// Cuts a program into pieces of about equal length.
     pub fn cut(program: &'a Program) -> Pieces<'a> {
         Self::cut_to(program, LONGEST)
     }
 
-    /// The same with pieces of at most so many operations.
+    /// The same with pieces of at most `longest` operations.
     pub fn cut_to(program: &'a Program, longest: usize) -> Pieces<'a> {
         let computed: Vec<Value> = computed(program).collect();
         let count = computed.len().div_ceil(longest).max(1);
@@ -58,7 +59,7 @@ impl<'a> Pieces<'a> {
         cut
     }
 
-    /// The whole program as one piece, where no optimiser is in the way.
+    /// The whole program as one piece, for languages without an optimiser.
     pub fn whole(program: &'a Program) -> Pieces<'a> {
         Pieces {
             program,
@@ -68,7 +69,7 @@ impl<'a> Pieces<'a> {
         }
     }
 
-    /// The values that a piece has from an earlier one.
+    /// The values that a piece gets from earlier ones.
     pub fn inherited(&self, piece: usize) -> BTreeSet<Value> {
         let values = &self.pieces[piece];
         let used = values
@@ -78,7 +79,7 @@ impl<'a> Pieces<'a> {
             .collect()
     }
 
-    /// The leaves that a piece reads, in the order of their places.
+    /// The leaves that a piece reads, in the order of their positions.
     pub fn read(&self, piece: usize) -> BTreeMap<Leaf, Value> {
         let used = self.pieces[piece]
             .iter()
@@ -89,7 +90,7 @@ impl<'a> Pieces<'a> {
             .collect()
     }
 
-    /// The results that are no operation of their own (numbers, leaves), with their places: the first piece stores them.
+    /// The results that are numbers or leaves, with their positions; the first piece stores them.
     pub fn stored(&self, piece: usize) -> Vec<(usize, Value)> {
         let results = self.program.outputs.iter().copied().enumerate();
         results
@@ -97,7 +98,7 @@ impl<'a> Pieces<'a> {
             .collect()
     }
 
-    /// The places of a value among the results.
+    /// The positions of a value among the results.
     pub fn results(&self, value: Value) -> &[usize] {
         self.results.get(&value).map_or(&[], Vec::as_slice)
     }
@@ -111,12 +112,12 @@ fn results(program: &Program) -> HashMap<Value, Vec<usize>> {
     results
 }
 
-/// What a value is.
+/// The operation of a value.
 fn op(program: &Program, value: Value) -> Op {
     program.ops[value.0 as usize]
 }
 
-/// What a value reads, where it reads something.
+/// The leaf that a value reads; `None` for a number or an operation.
 fn as_leaf(program: &Program, value: Value) -> Option<Leaf> {
     match op(program, value) {
         Op::Input(symbol) => Some(Leaf::Symbol(symbol)),

@@ -1,8 +1,8 @@
-//! What a reviewer calls the results of the programs: places of matrices, and derivatives by parameters.
+//! Names of the results of the programs: entries of matrices, and derivatives by parameters.
 
 use qcar_model::{About, Entry};
 
-/// What a place of a matrix relates: `A[vz_wheel, z_body]`.
+/// The name of an entry of a matrix: `A[vz_wheel, z_body]`.
 pub fn entry_name(about: &About, entry: &Entry) -> String {
     let (row, column) = about.relates(entry);
     format!("{:?}[{row}, {column}]", entry.matrix)

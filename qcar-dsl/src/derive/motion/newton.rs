@@ -1,7 +1,7 @@
 //! Newton: accelerations of coordinates with inertia.
 
 use super::nodes::places;
-use super::{Derivation, Role};
+use super::{Derivation, MotionKind};
 use crate::derive::elimination::{Factors, Symmetric};
 use crate::expr::{CoordinateId, Expr, Symbol};
 use crate::model::CoordinateKind;
@@ -9,7 +9,7 @@ use crate::model::CoordinateKind;
 impl Derivation<'_> {
     /// Newton's equations for accelerations relative to the known ones: free fall, and prescribed motions.
     pub(super) fn accelerations(&mut self) {
-        let coordinates = self.with_role(Role::Inertial);
+        let coordinates = self.with_role(MotionKind::Inertial);
         let mut matrix = Symmetric::new(coordinates.len());
         let mut balance: Vec<Expr> = coordinates.iter().map(|&c| self.net_force(c)).collect();
         for (i, &c) in coordinates.iter().enumerate() {

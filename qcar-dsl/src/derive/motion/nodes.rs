@@ -4,7 +4,7 @@
 //! connect only to each other are a group: no damper resists their common motion, so the balance of the whole group
 //! determines its leader, and the others are determined by their offsets from the leader.
 
-use super::{Derivation, Role};
+use super::{Derivation, MotionKind};
 use crate::derive::combination::combine;
 use crate::derive::elimination::{Factors, Symmetric};
 use crate::derive::law::Law;
@@ -12,13 +12,13 @@ use crate::expr::{CoordinateId, Differential, Expr, Leaves, LinkId, Substitution
 use crate::model::CoordinateKind;
 
 impl Derivation<'_> {
-    pub(super) fn role(&self, c: CoordinateId) -> Role {
+    pub(super) fn role(&self, c: CoordinateId) -> MotionKind {
         match self.model.coordinates[c.0 as usize].kind {
-            CoordinateKind::Road | CoordinateKind::Motion => Role::Prescribed,
-            CoordinateKind::Mass(_) => Role::Inertial,
-            CoordinateKind::Node if self.is_held_by(c, |law| law.inertance) => Role::Inertial,
-            CoordinateKind::Node if self.is_held_by(c, |law| law.damping) => Role::Damped,
-            CoordinateKind::Node => Role::Static,
+            CoordinateKind::Road | CoordinateKind::Motion => MotionKind::Prescribed,
+            CoordinateKind::Mass(_) => MotionKind::Inertial,
+            CoordinateKind::Node if self.is_held_by(c, |law| law.inertance) => MotionKind::Inertial,
+            CoordinateKind::Node if self.is_held_by(c, |law| law.damping) => MotionKind::Damped,
+            CoordinateKind::Node => MotionKind::Static,
         }
     }
 
@@ -31,14 +31,14 @@ impl Derivation<'_> {
 
     /// Makes the last node of each group its leader, and expresses the stretches by leaders and offsets.
     pub(super) fn form_groups(&mut self) {
-        let mut left = self.with_role(Role::Damped);
+        let mut left = self.with_role(MotionKind::Damped);
         while let Some(first) = left.first().copied() {
             let group = self.joined_by_dampers(first);
             left.retain(|c| !group.contains(c));
             if let Some((&leader, others)) = group.split_last()
                 && self.moves_freely(&group)
             {
-                self.roles[leader.0 as usize] = Role::Static;
+                self.roles[leader.0 as usize] = MotionKind::Static;
                 self.leaders.extend(others.iter().map(|&c| (c, leader)));
             }
         }
@@ -63,7 +63,7 @@ impl Derivation<'_> {
                 .filter(|&l| self.stretch_of(l).iter().any(|&(held, _)| held == c))
             {
                 let nodes = self.stretch_of(l).iter().map(|&(held, _)| held);
-                let found = nodes.filter(|held| self.roles[held.0 as usize] == Role::Damped);
+                let found = nodes.filter(|held| self.roles[held.0 as usize] == MotionKind::Damped);
                 let new: Vec<_> = found.filter(|held| !group.contains(held)).collect();
                 group.extend(new);
             }
@@ -100,10 +100,10 @@ impl Derivation<'_> {
     // Balances
 
     pub(super) fn positions_of_static_nodes(&mut self) {
-        let applied = self.applied_to_nodes(Role::Static);
-        let solution = self.solve_nodes(Role::Static, applied, |d, l| {
+        let applied = self.applied_to_nodes(MotionKind::Static);
+        let solution = self.solve_nodes(MotionKind::Static, applied, |d, l| {
             let law = d.laws[l.0 as usize];
-            let given = d.along_others(l, Role::Static, Self::place);
+            let given = d.along_others(l, MotionKind::Static, Self::place);
             let mut at_rest = Substitution::new(Leaves::from([(Symbol::Stretch(l), given)]));
             (law.stiffness, at_rest.apply(d.g, law.force))
         });
@@ -123,10 +123,10 @@ impl Derivation<'_> {
     }
 
     pub(super) fn velocities_of_damped_nodes(&mut self) {
-        let applied = self.applied_to_nodes(Role::Damped);
-        let solution = self.solve_nodes(Role::Damped, applied, |d, l| {
+        let applied = self.applied_to_nodes(MotionKind::Damped);
+        let solution = self.solve_nodes(MotionKind::Damped, applied, |d, l| {
             let law = d.laws[l.0 as usize];
-            let given = d.along_others(l, Role::Damped, Self::speed);
+            let given = d.along_others(l, MotionKind::Damped, Self::speed);
             let mut at_rest = Substitution::new(Leaves::from([(Symbol::Rate(l), given)]));
             (law.damping, at_rest.apply(d.g, law.force))
         });
@@ -141,9 +141,9 @@ impl Derivation<'_> {
     /// The balance of a static node holds at every instant, so its time derivative is zero too. Force inputs there do
     /// not occur: `check` refuses forces whose rate would be needed.
     pub(super) fn velocities_of_static_nodes(&mut self) {
-        let steady = vec![self.g.constant(0.0); self.with_role(Role::Static).len()];
-        let solution = self.solve_nodes(Role::Static, steady, |d, l| {
-            let given = d.along_others(l, Role::Static, Self::speed);
+        let steady = vec![self.g.constant(0.0); self.with_role(MotionKind::Static).len()];
+        let solution = self.solve_nodes(MotionKind::Static, steady, |d, l| {
+            let given = d.along_others(l, MotionKind::Static, Self::speed);
             let mut leaves = Leaves::from([(Symbol::Stretch(l), d.g.symbol(Symbol::Rate(l)))]);
             for (i, inner) in d.model.links[l.0 as usize].law.inner.iter().enumerate() {
                 leaves.insert(Symbol::Inner(l, i as u16), inner.rate);
@@ -182,7 +182,7 @@ impl Derivation<'_> {
     }
 
     /// The part of a stretch, or of its rate, by the coordinates of other kinds.
-    fn along_others(&mut self, l: LinkId, role: Role, value: fn(&mut Self, CoordinateId) -> Expr) -> Expr {
+    fn along_others(&mut self, l: LinkId, role: MotionKind, value: fn(&mut Self, CoordinateId) -> Expr) -> Expr {
         let mut terms = self.reduced[l.0 as usize].clone();
         terms.retain(|&(c, _)| self.roles[c.0 as usize] != role);
         let terms: Vec<(Expr, Expr)> = terms
@@ -196,7 +196,7 @@ impl Derivation<'_> {
     /// the force if that is zero; `applied` gives the other forces on each node.
     fn solve_nodes(
         &mut self,
-        role: Role,
+        role: MotionKind,
         applied: Vec<Expr>,
         law: impl Fn(&mut Self, LinkId) -> (Expr, Expr),
     ) -> Vec<(CoordinateId, Expr)> {
@@ -218,7 +218,7 @@ impl Derivation<'_> {
         nodes.into_iter().zip(solution).collect()
     }
 
-    fn applied_to_nodes(&mut self, role: Role) -> Vec<Expr> {
+    fn applied_to_nodes(&mut self, role: MotionKind) -> Vec<Expr> {
         self.with_role(role)
             .into_iter()
             .map(|c| self.applied_to_group(c))
@@ -241,8 +241,11 @@ impl Derivation<'_> {
     pub(super) fn accelerations_of_nodes(&mut self) {
         let mut by_time = Differential::new(self.rates_of_leaves());
         let is_led = |d: &Self, c: &CoordinateId| d.leaders.contains_key(c);
-        let (led, damped): (Vec<_>, Vec<_>) = self.with_role(Role::Damped).into_iter().partition(|c| is_led(self, c));
-        for c in damped.into_iter().chain(self.with_role(Role::Static)).chain(led) {
+        let (led, damped): (Vec<_>, Vec<_>) = self
+            .with_role(MotionKind::Damped)
+            .into_iter()
+            .partition(|c| is_led(self, c));
+        for c in damped.into_iter().chain(self.with_role(MotionKind::Static)).chain(led) {
             let found = self
                 .definitions
                 .iter()

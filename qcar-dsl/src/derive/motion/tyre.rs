@@ -9,11 +9,11 @@ use crate::model::{CoordinateKind, Term};
 pub struct RollingTyre {
     /// Its link.
     pub link: LinkId,
-    /// What it carries: the mass in its stretch, then the mass of that name in another direction, if there is one.
+    /// The masses on the tyre: the mass in its stretch, then the mass of the same name in another direction, if any.
     pub wheel: Vec<CoordinateId>,
 }
 
-/// The tyre that can roll: the first link between a mass and a road whose law needs no acceleration.
+/// The first link between a mass and a road whose law has no inerter.
 pub fn rolling_tyre(model: &Checked) -> Option<RollingTyre> {
     let kind = |c: CoordinateId| model.coordinates[c.0 as usize].kind;
     let place = model.links.iter().position(|link| {

@@ -5,7 +5,7 @@ use crate::check::Checked;
 use crate::derive::complex::Complex;
 use crate::derive::elimination::Scalar;
 use crate::derive::stiffness::Stiffness;
-use crate::derive::vectors::Source;
+use crate::derive::vectors::ExcitationSource;
 use crate::expr::{CoordinateId, Differential, Expr, Graph, Symbol};
 use crate::model::CoordinateKind;
 
@@ -36,10 +36,10 @@ impl Change {
     }
 
     /// Change of the direct effect of an excitation.
-    pub(super) fn pushed(&self, source: Source) -> &[(usize, Complex)] {
+    pub(super) fn pushed(&self, source: ExcitationSource) -> &[(usize, Complex)] {
         match source {
-            Source::Force(i) => &self.loads[i as usize],
-            Source::Motion(_) => &[],
+            ExcitationSource::Force(i) => &self.loads[i as usize],
+            ExcitationSource::Motion(_) => &[],
         }
     }
 }

@@ -89,7 +89,8 @@ impl Compliance {
         amplitudes
     }
 
-    /// The amplitudes for a unit motion of one coordinate, which the others resist by these forces.
+    /// The amplitudes for a unit motion of one coordinate; `forces` are the forces that this motion causes on the
+    /// others.
     pub(super) fn moved_by(&self, g: &mut Graph, moved: usize, forces: &Load) -> Vec<Complex> {
         let one = Complex::one(g);
         let Some(rows) = self.dense() else {

@@ -7,7 +7,7 @@ use crate::derive::combination::combine;
 use crate::derive::complex::Complex;
 use crate::derive::elimination::Scalar;
 use crate::derive::stiffness::Stiffness;
-use crate::derive::vectors::Source;
+use crate::derive::vectors::ExcitationSource;
 use crate::expr::{CoordinateId, Expr, Graph, LinkId, Symbol};
 use crate::model::{Quantity, Signal};
 
@@ -17,12 +17,12 @@ pub(super) struct Functional {
     pub(super) factor: Complex,
     pub(super) combination: Vec<(CoordinateId, Expr)>,
     /// The combination.
-    of: Of,
+    of: Combination,
 }
 
 /// The combination of an output.
 #[derive(Clone, Copy, PartialEq)]
-enum Of {
+enum Combination {
     Coordinate,
     Point(usize),
     Stretch(usize),
@@ -36,14 +36,14 @@ impl Functional {
         let stretch = |l: LinkId| model.links[l.0 as usize].stretch.clone();
         let one = Complex::one(g);
         let (factor, combination, of) = match *signal {
-            Signal::Motion(c, quantity) => (order(g, quantity), vec![(c, one.re)], Of::Coordinate),
+            Signal::Motion(c, quantity) => (order(g, quantity), vec![(c, one.re)], Combination::Coordinate),
             Signal::Point(place, quantity) => {
                 let place = usize::from(place);
                 let combination = model.points[place].combination.clone();
-                (order(g, quantity), combination, Of::Point(place))
+                (order(g, quantity), combination, Combination::Point(place))
             }
-            Signal::LinkStretch(l) => (one, stretch(l), Of::Stretch(l.0 as usize)),
-            Signal::LinkForce(l) => (links[l.0 as usize].total, stretch(l), Of::Force(l.0 as usize)),
+            Signal::LinkStretch(l) => (one, stretch(l), Combination::Stretch(l.0 as usize)),
+            Signal::LinkForce(l) => (links[l.0 as usize].total, stretch(l), Combination::Force(l.0 as usize)),
         };
         Functional {
             factor,
@@ -53,9 +53,9 @@ impl Functional {
     }
 
     /// Direct contribution of a force input to the force of a link.
-    pub(super) fn input(&self, links: &[Stiffness], source: Source) -> Option<Complex> {
+    pub(super) fn input(&self, links: &[Stiffness], source: ExcitationSource) -> Option<Complex> {
         match self.of {
-            Of::Force(link) => by_source(&links[link].inputs, source),
+            Combination::Force(link) => by_source(&links[link].inputs, source),
             _ => None,
         }
     }
@@ -64,21 +64,21 @@ impl Functional {
     pub(super) fn derivative(
         &self,
         g: &mut Graph,
-        source: Source,
+        source: ExcitationSource,
         amplitudes: &[Complex],
         scaled: &[Complex],
         change: &Change,
     ) -> Complex {
         let link = match self.of {
-            Of::Coordinate => return Complex::zero(g),
-            Of::Point(place) => return along(g, change.point(place), scaled),
-            Of::Stretch(link) | Of::Force(link) => link,
+            Combination::Coordinate => return Complex::zero(g),
+            Combination::Point(place) => return along(g, change.point(place), scaled),
+            Combination::Stretch(link) | Combination::Force(link) => link,
         };
         let Some(own) = change.links.iter().find(|own| own.link == link) else {
             return Complex::zero(g);
         };
         let turned = along(g, &own.stretch, scaled);
-        if self.of == Of::Stretch(link) {
+        if self.of == Combination::Stretch(link) {
             return turned;
         }
         let stiffened = along(g, &self.combination, amplitudes).mul(g, own.stiffness);

@@ -4,15 +4,17 @@ use crate::check::Checked;
 use crate::derive::complex::Complex;
 use crate::derive::elimination::Scalar;
 use crate::derive::stiffness::Stiffness;
-use crate::derive::vectors::Source;
+use crate::derive::vectors::ExcitationSource;
 use crate::expr::Graph;
 
 /// The force on each coordinate for a unit force input, without motion.
 pub(super) type Load = Vec<(usize, Complex)>;
 
 /// The entry of a force input.
-pub(super) fn by_source(inputs: &[(u16, Complex)], source: Source) -> Option<Complex> {
-    let found = inputs.iter().find(|(input, _)| Source::Force(*input) == source);
+pub(super) fn by_source(inputs: &[(u16, Complex)], source: ExcitationSource) -> Option<Complex> {
+    let found = inputs
+        .iter()
+        .find(|(input, _)| ExcitationSource::Force(*input) == source);
     found.map(|&(_, value)| value)
 }
 
@@ -32,7 +34,7 @@ pub(super) fn load(model: &Checked, g: &mut Graph, links: &[Stiffness], input: u
         .map(|&(c, share)| (c.0 as usize, Complex::real(g, share)))
         .collect();
     for (link, parts) in model.links.iter().zip(links) {
-        let Some(force) = by_source(&parts.inputs, Source::Force(input)) else {
+        let Some(force) = by_source(&parts.inputs, ExcitationSource::Force(input)) else {
             continue;
         };
         for &(c, coefficient) in &link.stretch {

@@ -1,4 +1,4 @@
-//! What models and laws share: derived quantities, and `if` around statements.
+//! Statements that models and laws share: derived quantities, and `if` around statements.
 
 use super::expression::{expression, option_condition};
 use super::tokens::{Parsed, Tokens};

@@ -12,7 +12,7 @@ use crate::front::syntax::{
 
 const HEAD: &str = "effect name at link l named damper { … }";
 
-/// What a change can begin with.
+/// The words with which a statement of an effect can begin.
 const WORDS: [&str; 23] = [
     "param",
     "strength",
@@ -39,7 +39,7 @@ const WORDS: [&str; 23] = [
     "link",
 ];
 
-/// What follows the word `effect`.
+/// Parses an effect after the word `effect`.
 pub fn effect(tokens: &mut Tokens) -> Parsed<Effect> {
     let name = tokens.new_name("the name of an effect", HEAD)?;
     let pattern = pattern(tokens)?;
@@ -215,7 +215,7 @@ fn parameter(tokens: &mut Tokens) -> Parsed<EffectParameter> {
     const EXAMPLE: &str = "param k: N/m = 0.5*l.spring in 0.1*l.spring..2*l.spring \"what it is\";";
     let (strength, shape) = (tokens.take_word("strength"), tokens.take_word("shape"));
     let clock = !strength && !shape && tokens.take_word("clock");
-    // What is given is no strength: nothing would be left to find. Time is always given.
+    // A strength cannot be known, since it is what a search estimates. Time is always known.
     let (shared, known) = (tokens.take_word("shared"), !strength && tokens.take_word("known"));
     let known = known || clock;
     word(tokens, "param", EXAMPLE)?;

@@ -9,7 +9,7 @@ use crate::front::syntax::{
     Comparison, Dotted, Expression, ExpressionKind, List, Logic, Name, Operator, OptionTest, Order, Table,
 };
 
-/// An expression of its own: what a statement says after `=`, or a word such as `spring`.
+/// A complete expression: what follows `=` or a word such as `spring` in a statement.
 pub fn expression(tokens: &mut Tokens) -> Parsed<Expression> {
     tokens.reset_parts();
     sum(tokens)
@@ -278,7 +278,7 @@ fn negation<'a, Test>(tokens: &mut Tokens<'a>, test: &dyn Fn(&mut Tokens<'a>) ->
     if tokens.take("!") {
         return Ok(Logic::Not(Box::new(negation(tokens, test)?)));
     }
-    // Brackets may hold a condition, or begin the left side of a comparison.
+    // Brackets may contain a condition, or begin the left side of a comparison.
     let mut ahead = *tokens;
     match (test(tokens), ahead.group(Delimiter::Parenthesis)) {
         (Ok(single), _) => Ok(Logic::Test(single)),

@@ -9,7 +9,7 @@ use super::unit::declared_unit;
 use crate::diagnostic::reading;
 use crate::front::syntax::{Element, ElementUse, LawStatement, Name, UnitText};
 
-/// What a statement of a law can begin with.
+/// The words with which a statement of a law can begin.
 const WORDS: [&str; 11] = [
     "spring",
     "damper",
@@ -87,7 +87,7 @@ fn law_statement(tokens: &mut Tokens) -> Parsed<LawStatement> {
     }
 }
 
-/// `active;`, which is no use of an element of that name.
+/// True for `active;`, false for the use of an element of that name.
 fn is_alone(tokens: &Tokens) -> bool {
     let mut ahead = *tokens;
     ahead.any_word().is_some() && ahead.sees(";")

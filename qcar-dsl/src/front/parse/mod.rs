@@ -31,13 +31,13 @@ use statement::Scope;
 pub use tokens::FUNCTIONS;
 use tokens::{Context, Parsed, Tokens};
 
-/// A tree as far as the text could be read, and every mistake in it.
+/// A syntax tree of the readable part of a text, and every mistake in it.
 pub struct Reading {
-    /// What could be read.
+    /// The readable part.
     pub file: File,
     /// In the order of the text.
     pub mistakes: Vec<Diagnostic>,
-    /// The compiler's places of the tokens of an inline macro, by [`Span::start`]; empty for a text.
+    /// The Rust compiler's positions of the tokens of an inline macro, indexed by [`Span::start`]; empty for a text.
     pub places: Vec<proc_macro2::Span>,
 }
 
@@ -75,8 +75,9 @@ pub fn parse_tokens(tokens: TokenStream) -> Reading {
     parse(tokens, 0, None)
 }
 
-/// Inside a procedural macro the compiler's lexer gives the tokens of a string no positions; proc_macro2's own does.
-/// Which of them it uses is one switch for the whole process, so the threads take turns.
+/// Runs a function with the lexer of proc_macro2. Inside a procedural macro, the lexer of the Rust compiler would be
+/// used, which gives the tokens of a string no positions. The choice of the lexer holds for the whole process, so
+/// threads take turns.
 fn with_own_lexer<Result>(read: impl FnOnce() -> Result) -> Result {
     static SWITCH: Mutex<()> = Mutex::new(());
     let _turn = SWITCH.lock().unwrap_or_else(|poisoned| poisoned.into_inner());

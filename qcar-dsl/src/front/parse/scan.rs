@@ -1,5 +1,5 @@
-//! A first scan of the text, before the Rust lexer: that lexer refuses a whole file at one place for a foreign
-//! character or bracket, so these get diagnostics of their own.
+//! A first scan of the text, before the Rust lexer. That lexer refuses the whole file at the first foreign character or
+//! bracket, so this scan reports each of them.
 
 use crate::diagnostic::{Code, Diagnostic, reading};
 use crate::source::{Source, Span};
@@ -7,10 +7,11 @@ use crate::source::{Source, Span};
 /// Brackets nested deeper than this are refused, since the lexer and all that follow recurse.
 const DEEPEST: usize = 64;
 
-/// Numbers of more digits than this are refused, since to read them costs as the square: no number of 64 bits needs more.
+/// Numbers with more digits than this are refused, since the time to read one grows with the square of its length. No
+/// 64-bit number needs more digits.
 const LONGEST_NUMBER: usize = 1100;
 
-/// Finds what the lexer would refuse.
+/// Finds everything that the lexer would refuse.
 pub fn scan(source: &Source, index: u16) -> Vec<Diagnostic> {
     let mut scan = Scan {
         source,
@@ -27,7 +28,7 @@ struct Scan<'a> {
     source: &'a Source,
     index: u16,
     open: Vec<(u32, char)>,
-    /// Of the line under way.
+    /// Foreign characters of the current line.
     foreign: Vec<(Span, char)>,
     found: Vec<Diagnostic>,
 }
@@ -36,7 +37,7 @@ impl Scan<'_> {
     fn run(&mut self) {
         let text = self.source.text.as_str();
         let mut at = 0;
-        // What is too deep says all: the brackets after it would each be a mistake again.
+        // Stops after a bracket that is nested too deeply, since each bracket inside it would be reported again.
         while let Some(character) = text[at..].chars().next().filter(|_| self.open.len() <= DEEPEST) {
             let rest = &text[at..];
             at += match character {
@@ -63,7 +64,7 @@ impl Scan<'_> {
         }
     }
 
-    /// Returns the length of a sentence with its quotes.
+    /// The length of a sentence with its quotes, bytes.
     fn sentence(&mut self, at: usize, rest: &str) -> usize {
         let mut escaped = false;
         for (offset, character) in rest.char_indices().skip(1) {
@@ -79,7 +80,7 @@ impl Scan<'_> {
         line.len().max(1)
     }
 
-    /// Returns the length of a comment with its marks.
+    /// The length of a comment with its marks, bytes.
     fn comment(&mut self, at: usize, rest: &str) -> usize {
         block_comment(rest).unwrap_or_else(|| {
             self.found.push(reading::unclosed_comment(self.span(at as u32, 2)));
@@ -87,7 +88,7 @@ impl Scan<'_> {
         })
     }
 
-    /// Returns the length of a run of digits.
+    /// The length of a sequence of digits, bytes.
     fn number(&mut self, at: usize, rest: &str) -> usize {
         let is_digit = |byte: &u8| byte.is_ascii_digit() || *byte == b'_';
         let length = rest.bytes().take_while(is_digit).count();
@@ -123,7 +124,7 @@ impl Scan<'_> {
                 self.open.pop();
             }
             Some((place, open)) => match self.open.iter().rposition(|(_, open)| closing(*open) == character) {
-                // Where the bracket closes an outer one, the inner ones are what is missing.
+                // If it closes an outer bracket, the closing brackets of the inner ones are missing.
                 Some(outer) => {
                     let inner = self.open.split_off(outer + 1);
                     self.open.pop();
@@ -155,7 +156,7 @@ impl Scan<'_> {
     }
 }
 
-/// The length of a comment that may hold others; `None` for one that does not end.
+/// The length of a comment that may contain others, bytes; `None` if it does not end.
 fn block_comment(rest: &str) -> Option<usize> {
     let mut depth = 0;
     let mut at = 0;
@@ -191,7 +192,7 @@ fn is_foreign(character: char) -> bool {
         || (character.is_ascii_control() && !character.is_ascii_whitespace())
 }
 
-/// What to write in place of a character; a character that has no better spelling goes.
+/// What to write instead of a character; empty if the language has no spelling for it.
 fn in_ascii(character: char) -> String {
     let spelled = match character {
         '²' => "^2",

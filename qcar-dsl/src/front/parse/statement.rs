@@ -11,7 +11,7 @@ use crate::front::syntax::{
     Statement,
 };
 
-/// The block that a statement stands in.
+/// The kind of block that contains a statement.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Scope {
     /// `family { … }`
@@ -24,7 +24,7 @@ pub enum Scope {
     Direction,
 }
 
-/// What a statement can begin with.
+/// The words with which a statement can begin.
 const WORDS: [&str; 19] = [
     "param",
     "known",
@@ -59,7 +59,7 @@ pub fn body(inside: Tokens, scope: Scope) -> Vec<Statement> {
     })
 }
 
-/// Where a statement belongs that means nothing in this block.
+/// The block in which a statement belongs; `None` if it is allowed in this one.
 fn home(statement: &Statement, scope: Scope) -> Option<&'static str> {
     use Statement::*;
     let (home, fits) = match statement {
@@ -112,7 +112,7 @@ pub fn statement(tokens: &mut Tokens, scope: Scope) -> Parsed<Statement> {
     }
 }
 
-/// `word =`: no other statement has its `=` there.
+/// True for `word =`, with which no other statement begins.
 fn is_choice(tokens: &Tokens) -> bool {
     let mut ahead = *tokens;
     ahead.any_word().is_some() && ahead.sees("=")

@@ -10,26 +10,26 @@ use crate::diagnostic::{Diagnostic, reading};
 use crate::front::syntax::Name;
 use crate::source::Span;
 
-/// What parsing gives: the thing, or why it is none. Boxed, since mistakes are large and rare.
-pub type Parsed<Thing> = Result<Thing, Box<Diagnostic>>;
+/// The result of parsing: a value or a mistake, which is boxed because it is large and rare.
+pub type Parsed<T> = Result<T, Box<Diagnostic>>;
 
-/// Marks of two characters; the first character of one never stands for itself.
+/// Marks of two characters. If one follows, its first character is not read as a mark of its own.
 const PAIRS: [&str; 7] = ["==", "!=", "<=", ">=", "&&", "||", ".."];
 
-/// Expressions with more parts than this are refused, since all that follows recurses over them.
+/// Expressions with more parts than this are refused, since later stages recurse over them.
 const LONGEST: u32 = 250;
 
-/// What all cursors over one source share.
+/// State that all cursors over one source share.
 pub struct Context {
     /// The index of the source.
     pub source: u16,
     /// The length of its text; `None` for the tokens of an inline macro.
     pub length: Option<u32>,
-    /// The compiler's places of an inline macro's tokens, in the order in which they were asked for.
+    /// The Rust compiler's positions of an inline macro's tokens, in the order in which they were requested.
     pub places: RefCell<Vec<proc_macro2::Span>>,
     /// The mistakes so far.
     pub found: RefCell<Vec<Diagnostic>>,
-    /// How many parts the expression under way has.
+    /// Number of parts of the current expression so far.
     pub parts: Cell<u32>,
 }
 
@@ -51,12 +51,12 @@ impl Context {
     }
 }
 
-/// A place among the tokens of a source, and the end of the block that it is in.
+/// A position among the tokens of a source, and the end of the enclosing block.
 #[derive(Clone, Copy)]
 pub struct Tokens<'a> {
     cursor: Cursor<'a>,
     context: &'a Context,
-    /// Where the closing bracket stands; `None` at the outermost level.
+    /// Position of the closing bracket; `None` at the outermost level.
     close: Option<Span>,
 }
 
@@ -70,12 +70,12 @@ impl<'a> Tokens<'a> {
         }
     }
 
-    /// No token is left in the block.
+    /// True if no token is left in the block.
     pub fn at_end(&self) -> bool {
         self.cursor.eof()
     }
 
-    /// The place of the next token, or of the end of the block.
+    /// The position of the next token, or of the end of the block.
     pub fn span(&self) -> Span {
         let end = self.context.length.unwrap_or(0);
         match (self.at_end(), self.close, self.context.length) {
@@ -89,7 +89,7 @@ impl<'a> Tokens<'a> {
         }
     }
 
-    /// From a place to the end of the last token that was taken.
+    /// From a position to the end of the last token that was taken.
     pub fn span_from(&self, start: Span) -> Span {
         start.join(self.context.place(self.cursor.prev_span()))
     }
@@ -112,13 +112,13 @@ impl<'a> Tokens<'a> {
         }
     }
 
-    /// Keeps a mistake and goes on.
+    /// Records a mistake; parsing continues.
     pub fn report(&self, diagnostic: Diagnostic) {
         self.context.found.borrow_mut().push(diagnostic);
     }
 
-    /// The mistake of anything but `expected` at this place.
-    pub fn expected<Thing>(&self, expected: &str, example: &str) -> Parsed<Thing> {
+    /// Fails because `expected` is not at this position.
+    pub fn expected<T>(&self, expected: &str, example: &str) -> Parsed<T> {
         Err(Box::new(reading::expected(
             self.span(),
             expected,
@@ -149,13 +149,13 @@ impl<'a> Tokens<'a> {
         })
     }
 
-    /// Takes a word that refers to something.
+    /// Takes a name that is declared elsewhere.
     pub fn name(&mut self, what: &str, example: &str) -> Parsed<Name> {
         let at = *self;
         self.any_word().map_or_else(|| at.expected(what, example), Ok)
     }
 
-    /// Takes a word that names something new, which may not be reserved.
+    /// Takes a name that is declared here; reserved names are reported.
     pub fn new_name(&mut self, what: &str, example: &str) -> Parsed<Name> {
         let name = self.name(what, example)?;
         if let Some(owner) = owner(&name.text) {
@@ -183,7 +183,7 @@ impl<'a> Tokens<'a> {
         (!is_half).then_some(cursor)
     }
 
-    /// Whether a mark is next.
+    /// True if a mark is next.
     pub fn sees(&self, mark: &str) -> bool {
         self.after(mark).is_some()
     }
@@ -228,7 +228,7 @@ impl<'a> Tokens<'a> {
         }
     }
 
-    /// Takes digits if they are next: as written, their value, and the letters that follow without a space.
+    /// Takes a number if it is next: its digits as written, its value, and the letters that follow without a space.
     pub fn digits(&mut self) -> Option<(String, f64, String)> {
         let (literal, after) = self.cursor.literal()?;
         let (digits, value, suffix) = match Lit::new(literal) {
@@ -244,7 +244,7 @@ impl<'a> Tokens<'a> {
         ))
     }
 
-    /// Steps into a group of brackets if one is next, and after it.
+    /// If a group of brackets is next, moves behind it and returns a cursor over its content.
     pub fn group(&mut self, delimiter: Delimiter) -> Option<Tokens<'a>> {
         let (inside, span, after) = self.cursor.group(delimiter)?;
         self.cursor = after;
@@ -255,14 +255,14 @@ impl<'a> Tokens<'a> {
         })
     }
 
-    /// Steps into a block that must be next.
+    /// Moves behind a block that must be next and returns a cursor over its content.
     pub fn block(&mut self, example: &str) -> Parsed<Tokens<'a>> {
         let at = *self;
         self.group(Delimiter::Brace)
             .map_or_else(|| at.expected("`{`", example), Ok)
     }
 
-    /// Nothing may be left in a group.
+    /// Fails if tokens are left in a group.
     pub fn finished(&self, example: &str) -> Parsed<()> {
         if self.at_end() {
             Ok(())
@@ -271,7 +271,7 @@ impl<'a> Tokens<'a> {
         }
     }
 
-    /// Goes past the next `;` or block, where the next statement begins.
+    /// Moves behind the next `;` or block, where the next statement begins.
     pub fn skip_statement(&mut self) {
         while let Some((token, after)) = self.cursor.token_tree() {
             self.cursor = after;
@@ -284,7 +284,7 @@ impl<'a> Tokens<'a> {
         }
     }
 
-    /// Parses parts to the end of a block. A mistake in one costs that one only.
+    /// Parses parts to the end of a block. A part with a mistake is left out; the others are kept.
     pub fn each<Part>(mut self, mut parse: impl FnMut(&mut Tokens<'a>) -> Parsed<Part>) -> Vec<Part> {
         let mut parts = Vec::new();
         while !self.at_end() {
@@ -301,7 +301,7 @@ impl<'a> Tokens<'a> {
         parts
     }
 
-    /// Counts one more part of the expression under way.
+    /// Counts one more part of the current expression.
     pub fn count_part(&self) -> Parsed<()> {
         let parts = self.context.parts.get() + 1;
         self.context.parts.set(parts);
@@ -312,7 +312,7 @@ impl<'a> Tokens<'a> {
         }
     }
 
-    /// Parses an entry of a list. Entries stand beside each other, so that the parts of one do not count for the next.
+    /// Parses an entry of a list. Entries are not nested, so the parts of one do not count for the next.
     pub fn entry<Part>(&mut self, parse: impl FnOnce(&mut Self) -> Parsed<Part>) -> Parsed<Part> {
         let parts = self.context.parts.get();
         let part = parse(self);
@@ -320,13 +320,13 @@ impl<'a> Tokens<'a> {
         part
     }
 
-    /// Starts to count anew.
+    /// Sets the count of parts to zero.
     pub fn reset_parts(&self) {
         self.context.parts.set(0);
     }
 }
 
-/// Who has taken a name, if anybody has.
+/// The owner of a reserved name; `None` for a free one.
 fn owner(name: &str) -> Option<&'static str> {
     match name {
         "s" => Some("the stretch of a link"),

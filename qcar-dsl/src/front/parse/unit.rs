@@ -41,7 +41,7 @@ fn product(tokens: &mut Tokens) -> Parsed<Vec<UnitFactor>> {
     }
 }
 
-/// Another factor stands right after; `in` begins a range, not a unit.
+/// True if another factor follows; `in` begins a range, not a unit.
 fn follows(tokens: &Tokens) -> bool {
     tokens.peek().is_some_and(|word| word != "in")
 }
@@ -62,7 +62,7 @@ fn power(tokens: &mut Tokens) -> Parsed<Vec<UnitFactor>> {
     raised(tokens, factors)
 }
 
-/// The factors to the power that follows, if one does.
+/// The factors, raised to the power that follows, if any.
 fn raised(tokens: &mut Tokens, mut factors: Vec<UnitFactor>) -> Parsed<Vec<UnitFactor>> {
     if tokens.take("^") {
         let (numerator, denominator) = exponent(tokens)?;
@@ -129,8 +129,8 @@ fn whole(tokens: &mut Tokens) -> Parsed<i32> {
     }
 }
 
-/// A number with the unit that follows it, if one does. A unit ends where the next word is none, so that
-/// `2 N/k` is 2 N divided by `k`; a product of units is written with spaces, since `*` goes on with the expression.
+/// A number with the unit that follows it, if any. A unit ends before the first word that is no symbol of a unit, so `2
+/// N/k` is 2 N divided by `k`. A product of units is written with spaces, since `*` continues the expression.
 pub fn number(tokens: &mut Tokens) -> Parsed<Number> {
     let (at, span) = (*tokens, tokens.span());
     let negative = tokens.take("-");

@@ -53,7 +53,7 @@ fn texts(names: &[Name]) -> Vec<String> {
     names.iter().map(|name| name.text.clone()).collect()
 }
 
-/// A word with its list; empty for an empty list.
+/// A word followed by a list; empty if the list is empty.
 fn worded(word: &str, list: &[String], between: &str) -> String {
     if list.is_empty() {
         String::new()

@@ -7,7 +7,7 @@ use crate::front::syntax::{
 };
 use crate::units;
 
-/// How tightly an expression holds together.
+/// Precedence of an expression, from the weakest to the strongest.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Rank {
     Sum,
@@ -23,7 +23,7 @@ fn rank(expression: &Expression) -> Rank {
         ExpressionKind::Binary(Operator::Multiply | Operator::Divide, ..) => Rank::Product,
         ExpressionKind::Negative(_) => Rank::Sign,
         ExpressionKind::Number(number) if number.digits.starts_with('-') => Rank::Sign,
-        // Its unit would take the exponent.
+        // An exponent would apply to its unit.
         ExpressionKind::Number(number) if !number.unit.factors.is_empty() => Rank::Power,
         ExpressionKind::Binary(Operator::Power, ..) => Rank::Power,
         ExpressionKind::Number(_) | ExpressionKind::Name(_) | ExpressionKind::Call(..) => Rank::Atom,
@@ -76,7 +76,7 @@ fn binary(operator: Operator, left: &Expression, right: &Expression) -> String {
     }
 }
 
-/// A name after `/` would be read as a unit where a number with a unit stands before it.
+/// Puts a divisor in brackets if it could be read as a part of the unit of the number before it.
 fn quotient(left: &Expression, right: &Expression) -> String {
     let (above, below) = (at_least(Rank::Product, left), at_least(Rank::Sign, right));
     if ends_in_unit(left) && begins_like_unit(right) {
@@ -152,7 +152,7 @@ impl Display for Number {
 }
 
 impl UnitText {
-    /// What people call the coherent unit that is written here: `Hz` where it is written so, since a cycle is no radian.
+    /// The usual name of the coherent unit that is written here. `Hz` stays `Hz`, since a cycle is not a radian.
     pub fn name(&self, unit: units::Unit) -> String {
         let written = self.to_string();
         if written == "Hz" { written } else { unit.to_string() }
@@ -180,7 +180,7 @@ impl Display for UnitText {
     }
 }
 
-/// Without a numerator, after a number: `5 s^-1`.
+/// A unit without a numerator, after a number: `5 s^-1`.
 fn spelled_out(factors: &[UnitFactor]) -> String {
     let spelled = |factor: &UnitFactor| match factor.denominator {
         1 => format!("{}^{}", factor.symbol.text, factor.numerator),
@@ -189,7 +189,7 @@ fn spelled_out(factors: &[UnitFactor]) -> String {
     factors.iter().map(spelled).collect::<Vec<_>>().join(" ")
 }
 
-/// A symbol to the size of its exponent.
+/// A symbol with the absolute value of its exponent.
 fn raised(factor: &UnitFactor) -> String {
     let symbol = &factor.symbol.text;
     match (factor.numerator.abs(), factor.denominator) {

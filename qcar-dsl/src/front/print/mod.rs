@@ -1,4 +1,5 @@
-//! The tree as canonical model text, which parses to the same tree. Comments of the file are not part of the tree.
+//! Prints the tree as canonical model text, which parses to the same tree. Comments of the file are not part of the
+//! tree.
 
 use std::fmt::{self, Display, Formatter};
 
@@ -27,7 +28,7 @@ impl Display for File {
     }
 }
 
-/// A declaration on one line, as `model::Declared` keeps it.
+/// A declaration on one line, as `model::Declaration` stores it.
 pub fn one_line(statement: &Statement) -> String {
     let lines = statement_lines(statement);
     let words: Vec<&str> = lines.iter().map(|line| line.trim()).collect();
@@ -51,7 +52,7 @@ fn element_lines(element: &Element) -> Vec<String> {
     block(&head, &element.doc, element.body.iter().flat_map(law_lines).collect())
 }
 
-/// A head, then a sentence and lines in braces.
+/// A head, then a description and lines in braces.
 fn block(head: &str, doc: &str, body: Vec<String>) -> Vec<String> {
     let doc = (!doc.is_empty()).then(|| format!("{doc:?}"));
     let inside = doc.into_iter().chain(body).map(|line| format!("    {line}"));

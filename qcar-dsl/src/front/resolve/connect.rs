@@ -1,9 +1,9 @@
-//! What acts between and on the coordinates: points, forces, links.
+//! Points, forces and links, which act on the coordinates.
 
 use super::declare::declared;
 use super::law::force_unit;
-use super::names::{Moving, Thing};
-use super::{Known, Placed, Reported, Resolver};
+use super::names::{DirectionName, Moving};
+use super::{Reported, Resolved, Resolver, StatementOfDirection};
 use crate::diagnostic::{Diagnostic, names, units as mistakes};
 use crate::expr::{CoordinateId, Expr, LinkId};
 use crate::front::syntax::{self, Expression, ExpressionKind, LawStatement, Name, Statement};
@@ -11,22 +11,23 @@ use crate::model::{CoordinateKind, Direction, ForceInput, Law, Link, Point, Term
 use crate::units::Unit;
 
 impl Resolver<'_> {
-    /// Other names of coordinates, and what several of them move, each of what is named above it.
-    pub fn points(&mut self, placed: &[Placed]) {
+    /// Points: other names of coordinates, and combinations of several coordinates. A point may use those that are
+    /// declared above it.
+    pub fn points(&mut self, placed: &[StatementOfDirection]) {
         for (direction, statement) in placed {
             let Statement::Point(name, target) = statement else {
                 continue;
             };
             let thing = match self.point(name, target, direction, statement) {
-                Ok(Moving::Coordinate(coordinate)) => Thing::Coordinate(coordinate),
-                Ok(Moving::Point(place)) => Thing::Point(place),
-                Err(_) => Thing::Broken,
+                Ok(Moving::Coordinate(coordinate)) => DirectionName::Coordinate(coordinate),
+                Ok(Moving::Point(place)) => DirectionName::Point(place),
+                Err(_) => DirectionName::Broken,
             };
             self.declare_thing(name, direction, thing);
         }
     }
 
-    fn point(&mut self, name: &Name, target: &Expression, direction: &str, statement: &Statement) -> Known<Moving> {
+    fn point(&mut self, name: &Name, target: &Expression, direction: &str, statement: &Statement) -> Resolved<Moving> {
         if let ExpressionKind::Name(own) = &target.kind
             && let Some(Moving::Coordinate(coordinate)) = self.moving_of(own, direction)?
         {
@@ -47,8 +48,8 @@ impl Resolver<'_> {
         Ok(Moving::Point(self.model.points.len() as u16 - 1))
     }
 
-    /// Inputs that push coordinates.
-    pub fn forces(&mut self, placed: &[Placed]) {
+    /// Force inputs.
+    pub fn forces(&mut self, placed: &[StatementOfDirection]) {
         for (direction, statement) in placed {
             let Statement::Force(name, on) = statement else {
                 continue;
@@ -56,9 +57,9 @@ impl Resolver<'_> {
             let thing = match self.force(name, on.as_ref(), direction, statement) {
                 Ok(force) => {
                     self.model.forces.push(force);
-                    Thing::Force(self.model.forces.len() as u16 - 1)
+                    DirectionName::Force(self.model.forces.len() as u16 - 1)
                 }
-                Err(_) => Thing::Broken,
+                Err(_) => DirectionName::Broken,
             };
             self.declare_thing(name, direction, thing);
         }
@@ -70,7 +71,7 @@ impl Resolver<'_> {
         on: Option<&Expression>,
         direction: &str,
         statement: &Statement,
-    ) -> Known<ForceInput> {
+    ) -> Resolved<ForceInput> {
         let Some(on) = on else {
             return Ok(ForceInput {
                 name: name.text.clone(),
@@ -99,8 +100,8 @@ impl Resolver<'_> {
         })
     }
 
-    /// Links with their laws: first all stretches, since a law may use those of other links.
-    pub fn links(&mut self, placed: &[Placed]) {
+    /// Links with their laws. All stretches come first, since a law may use those of other links.
+    pub fn links(&mut self, placed: &[StatementOfDirection]) {
         let mut laws = Vec::new();
         for (direction, statement) in placed {
             let Statement::Link(link) = statement else { continue };
@@ -117,16 +118,16 @@ impl Resolver<'_> {
                         doc: link.doc.clone(),
                         declared: declared(&link.name, statement),
                     });
-                    Thing::Link(id)
+                    DirectionName::Link(id)
                 }
-                Err(Reported) => Thing::Broken,
+                Err(Reported) => DirectionName::Broken,
             };
-            let stretched = matches!(thing, Thing::Link(_)).then_some(id);
+            let stretched = matches!(thing, DirectionName::Link(_)).then_some(id);
             self.declare_thing(&link.name, direction, thing);
             laws.push((*direction, link, stretched));
         }
         for (direction, link, stretched) in laws {
-            // Mistakes of a law are reported by the callees.
+            // The called functions report the mistakes of a law.
             let _ = match stretched {
                 Some(id) => self.law_of_link(link, direction, id),
                 None => self.law_of_unknown(&link.body, direction).map(drop),
@@ -134,7 +135,7 @@ impl Resolver<'_> {
         }
     }
 
-    fn law_of_link(&mut self, link: &syntax::Link, direction: &str, id: LinkId) -> Known<()> {
+    fn law_of_link(&mut self, link: &syntax::Link, direction: &str, id: LinkId) -> Resolved<()> {
         let unit = self.model.links[usize::from(id.0)].unit;
         let (law, rolling) = self.law(&link.body, direction, id, unit)?;
         if law.terms.is_empty() {
@@ -151,13 +152,13 @@ impl Resolver<'_> {
         Ok(())
     }
 
-    /// The law of a stretch that is mistaken: as that of a length, unless its units are right for an angle alone.
-    fn law_of_unknown(&mut self, body: &[LawStatement], direction: &str) -> Known<(Law, Option<Vec<Term>>)> {
+    /// Checks the law of a link whose stretch is wrong: as the law of a length, unless its units fit only an angle.
+    fn law_of_unknown(&mut self, body: &[LawStatement], direction: &str) -> Resolved<(Law, Option<Vec<Term>>)> {
         let id = LinkId(self.model.links.len() as u16);
         let before = self.found.len();
         let law = self.law(body, direction, id, Unit::METER);
         let of_length = self.found.split_off(before);
-        // Its other mistakes are known by now.
+        // Mistakes other than those of units are known from the first pass.
         let _ = self.law(body, direction, id, Unit::ONE);
         let of_angle = self.found.split_off(before);
         let is_angle = !of_angle.iter().any(|mistake| mistake.code.is_of_units());
@@ -166,12 +167,12 @@ impl Resolver<'_> {
         law
     }
 
-    fn stretch(&mut self, link: &syntax::Link, direction: &str) -> Known<(Stretch, Unit)> {
+    fn stretch(&mut self, link: &syntax::Link, direction: &str) -> Resolved<(Stretch, Unit)> {
         self.travel(&link.stretch, direction, ("link", &link.name.text))
     }
 
-    /// A length or an angle by which something moves; `of` is the kind and the name of what it belongs to.
-    fn travel(&mut self, expression: &Expression, direction: &str, of: (&str, &str)) -> Known<(Stretch, Unit)> {
+    /// A combination of coordinates that is a length or an angle; `of` is the kind and the name of its owner.
+    fn travel(&mut self, expression: &Expression, direction: &str, of: (&str, &str)) -> Resolved<(Stretch, Unit)> {
         let combination = self.combination(expression, direction)?;
         let unit = combination.unit.unwrap_or(Unit::METER);
         if combination.terms.is_empty() {

@@ -1,26 +1,26 @@
-//! Parameters, derived quantities and what moves.
+//! Parameters, derived quantities, coordinates and gravity.
 
-use super::names::{Global, Thing};
+use super::names::{DirectionName, Global};
 use super::value::Locals;
-use super::{Known, Placed, Resolver};
+use super::{Resolved, Resolver, StatementOfDirection};
 use crate::diagnostic::{names, units as mistakes};
 use crate::expr::CoordinateId;
 use crate::front::print::one_line;
 use crate::front::syntax::{self, Name, ParameterDefault, Statement};
-use crate::model::{Coordinate, CoordinateKind, Declared, Default, Definition, Direction, Gravity, Parameter};
+use crate::model::{Coordinate, CoordinateKind, Declaration, Default, Definition, Direction, Gravity, Parameter};
 use crate::units::Unit;
 
-/// Where a statement declares a name, and its text.
-pub fn declared(name: &Name, statement: &Statement) -> Declared {
-    Declared {
+/// The position of a declared name, and the text of its statement.
+pub fn declared(name: &Name, statement: &Statement) -> Declaration {
+    Declaration {
         span: name.span,
         line: one_line(statement),
     }
 }
 
 impl Resolver<'_> {
-    /// Parameters first, since every expression may use them, wherever it stands.
-    pub fn parameters(&mut self, placed: &[Placed]) {
+    /// Parameters are declared first, since any expression may use them.
+    pub fn parameters(&mut self, placed: &[StatementOfDirection]) {
         for (_, statement) in placed {
             let Statement::Parameter(parameter) = statement else {
                 continue;
@@ -37,7 +37,7 @@ impl Resolver<'_> {
         self.shared_defaults(placed);
     }
 
-    fn parameter(&mut self, parameter: &syntax::Parameter, statement: &Statement) -> Known<Parameter> {
+    fn parameter(&mut self, parameter: &syntax::Parameter, statement: &Statement) -> Resolved<Parameter> {
         let name = &parameter.name.text;
         let in_coherent = |coherent: &str| in_coherent_unit(parameter, coherent);
         let unit = self.coherent(&parameter.unit, parameter.unit.span, in_coherent)?;
@@ -75,7 +75,7 @@ impl Resolver<'_> {
         })
     }
 
-    fn range(&mut self, low: &syntax::Number, high: &syntax::Number, unit: Unit, name: &str) -> Known<(f64, f64)> {
+    fn range(&mut self, low: &syntax::Number, high: &syntax::Number, unit: Unit, name: &str) -> Resolved<(f64, f64)> {
         let what = format!("the range of `{name}`");
         let (from, to) = (self.number_in(low, unit, &what)?, self.number_in(high, unit, &what)?);
         if from < to {
@@ -85,8 +85,8 @@ impl Resolver<'_> {
         Err(self.report(mistakes::range_reversed(span, &low.to_string(), &high.to_string())))
     }
 
-    /// Defaults that are other parameters, once all are known.
-    fn shared_defaults(&mut self, placed: &[Placed]) {
+    /// Defaults that refer to other parameters; all parameters are known by now.
+    fn shared_defaults(&mut self, placed: &[StatementOfDirection]) {
         for (_, statement) in placed {
             let Statement::Parameter(parameter) = statement else {
                 continue;
@@ -94,12 +94,12 @@ impl Resolver<'_> {
             let Some(ParameterDefault::Same(other)) = &parameter.default else {
                 continue;
             };
-            // A mistake is reported by the callee; the parameter then has no default.
+            // The called function reports a mistake; the parameter then has no default.
             let _ = self.shared_default(&parameter.name, other);
         }
     }
 
-    fn shared_default(&mut self, name: &Name, other: &Name) -> Known<()> {
+    fn shared_default(&mut self, name: &Name, other: &Name) -> Resolved<()> {
         let dotted = syntax::Dotted {
             names: vec![other.clone()],
         };
@@ -118,8 +118,8 @@ impl Resolver<'_> {
         self.follow_defaults(own, name)
     }
 
-    /// A chain of defaults must end.
-    fn follow_defaults(&mut self, from: u16, name: &Name) -> Known<()> {
+    /// Refuses a circular chain of defaults.
+    fn follow_defaults(&mut self, from: u16, name: &Name) -> Resolved<()> {
         let mut chain = vec![name.text.clone()];
         let mut at = from;
         while let Default::Same(next) = self.model.parameters[usize::from(at)].default {
@@ -133,8 +133,8 @@ impl Resolver<'_> {
         Ok(())
     }
 
-    /// Derived quantities, each of parameters and what is derived above it.
-    pub fn definitions(&mut self, placed: &[Placed]) {
+    /// Derived quantities. Each may use parameters and the derived quantities above it.
+    pub fn definitions(&mut self, placed: &[StatementOfDirection]) {
         let lets = placed.iter().filter_map(|(_, statement)| match statement {
             Statement::Let(definition) => Some((definition, *statement)),
             _ => None,
@@ -166,15 +166,15 @@ impl Resolver<'_> {
     }
 
     /// Masses, nodes, roads and motions.
-    pub fn coordinates(&mut self, placed: &[Placed]) {
+    pub fn coordinates(&mut self, placed: &[StatementOfDirection]) {
         for (direction, statement) in placed {
             let Statement::Coordinate(coordinate) = statement else {
                 continue;
             };
             let kind = self.coordinate_kind(coordinate);
             let thing = match kind {
-                Ok(_) => Thing::Coordinate(CoordinateId(self.model.coordinates.len() as u16)),
-                Err(_) => Thing::Broken,
+                Ok(_) => DirectionName::Coordinate(CoordinateId(self.model.coordinates.len() as u16)),
+                Err(_) => DirectionName::Broken,
             };
             self.declare_thing(&coordinate.name, direction, thing);
             let Ok(kind) = kind else { continue };
@@ -190,7 +190,7 @@ impl Resolver<'_> {
         }
     }
 
-    fn coordinate_kind(&mut self, coordinate: &syntax::Coordinate) -> Known<CoordinateKind> {
+    fn coordinate_kind(&mut self, coordinate: &syntax::Coordinate) -> Resolved<CoordinateKind> {
         let name = &coordinate.name.text;
         let locals = Locals::default();
         match &coordinate.kind {
@@ -218,8 +218,8 @@ impl Resolver<'_> {
         }
     }
 
-    /// At most one gravity for a direction.
-    pub fn gravities(&mut self, placed: &[Placed]) {
+    /// Gravities, at most one for each direction.
+    pub fn gravities(&mut self, placed: &[StatementOfDirection]) {
         for (direction, statement) in placed {
             let Statement::Gravity(name) = statement else { continue };
             let first = self
@@ -232,7 +232,7 @@ impl Resolver<'_> {
                 self.report(mistake);
                 continue;
             }
-            self.declare_thing(name, direction, Thing::Gravity);
+            self.declare_thing(name, direction, DirectionName::Gravity);
             let (direction, declared) = (Direction(direction.to_string()), declared(name, statement));
             self.model.gravities.push(Gravity {
                 name: name.text.clone(),
@@ -243,7 +243,7 @@ impl Resolver<'_> {
     }
 }
 
-/// The declaration in a coherent unit, its plain numbers in the unit that it was written in.
+/// The declaration in a coherent unit; its plain numbers get the unit in which it was written.
 fn in_coherent_unit(parameter: &syntax::Parameter, coherent: &str) -> String {
     let mut rewritten = parameter.clone();
     let with_unit = |number: &mut syntax::Number| {

@@ -1,31 +1,31 @@
-//! Laws: terms, inner states, and elements written out.
+//! Laws: terms, inner states and expanded elements.
 
 use super::value::{Locals, Value};
-use super::{Known, Reported, Resolver};
+use super::{Reported, Resolved, Resolver};
 use crate::diagnostic::{names, reading, units as mistakes};
 use crate::expr::{Expr, LinkId, Symbol};
 use crate::front::syntax::{Element, ElementUse, Expression, LawStatement, Name, UnitText};
 use crate::model::{Inner, Law, Term};
 use crate::units::Unit;
 
-/// A law under way.
-struct Writing {
+/// A law that is being built.
+struct LawBuilder {
     link: LinkId,
-    /// Of the stretch, m or 1.
+    /// Unit of the stretch, m or 1.
     stretch: Unit,
     terms: Vec<Term>,
     inner: Vec<Inner>,
     /// For each inner state, whether its rate has been given.
     rated: Vec<bool>,
-    /// Inside `rolling`, where forces are new and states are not.
+    /// True inside `rolling`, which replaces forces but keeps the states.
     rolling: bool,
-    /// It says `active`.
+    /// True if it is declared `active`.
     active: bool,
-    /// Some of it is mistaken, here or where a name in it is declared.
+    /// True if a part of it has a mistake, or uses a name whose declaration has one.
     mistaken: bool,
 }
 
-impl Writing {
+impl LawBuilder {
     /// The unit of the force, by virtual work.
     fn force(&self) -> Unit {
         force_unit(self.stretch)
@@ -41,27 +41,27 @@ pub fn force_unit(stretch: Unit) -> Unit {
     Unit::NEWTON.times(Unit::METER).per(stretch)
 }
 
-/// Where in a law: the names in sight, and the elements that are being written out.
+/// A position in a law: the visible names, and the elements that are being expanded.
 #[derive(Clone)]
 struct Place {
     locals: Locals,
-    /// Put before the names of states: `dahl.`.
+    /// Prefix of the names of states, such as `dahl.`.
     prefix: String,
-    /// The elements around, outermost first.
+    /// The enclosing elements, outermost first.
     inside: Vec<String>,
 }
 
 impl Resolver<'_> {
-    /// The law of a link of a direction, and the terms while rolling where it has them.
+    /// The law of a link, and its terms while rolling if it has a `rolling` block.
     pub fn law(
         &mut self,
         body: &[LawStatement],
         direction: &str,
         link: LinkId,
         stretch: Unit,
-    ) -> Known<(Law, Option<Vec<Term>>)> {
+    ) -> Resolved<(Law, Option<Vec<Term>>)> {
         let (terms, inner, rated) = (vec![], vec![], vec![]);
-        let mut writing = Writing {
+        let mut builder = LawBuilder {
             link,
             stretch,
             terms,
@@ -79,10 +79,10 @@ impl Resolver<'_> {
             prefix: String::new(),
             inside: vec![],
         };
-        self.add_stretch(&mut place.locals, &writing);
-        self.write(body, &mut place, &mut writing);
-        let terms = std::mem::take(&mut writing.terms);
-        writing.rolling = true;
+        self.add_stretch(&mut place.locals, &builder);
+        self.add_statements(body, &mut place, &mut builder);
+        let terms = std::mem::take(&mut builder.terms);
+        builder.rolling = true;
         let mut rolling = None;
         for statement in body {
             let LawStatement::Rolling(span, body) = statement else {
@@ -90,91 +90,91 @@ impl Resolver<'_> {
             };
             if rolling.is_some() {
                 self.report(mistakes::second_rolling(*span));
-                writing.mistaken = true;
+                builder.mistaken = true;
             }
-            self.write(body, &mut place.clone(), &mut writing);
-            rolling = Some(std::mem::take(&mut writing.terms));
+            self.add_statements(body, &mut place.clone(), &mut builder);
+            rolling = Some(std::mem::take(&mut builder.terms));
         }
-        if writing.mistaken {
+        if builder.mistaken {
             return Err(Reported);
         }
         Ok((
             Law {
                 terms,
-                inner: writing.inner,
-                active: writing.active,
+                inner: builder.inner,
+                active: builder.active,
             },
             rolling,
         ))
     }
 
-    /// `s` and `v`.
-    fn add_stretch(&mut self, locals: &mut Locals, writing: &Writing) {
+    /// Adds the names `s` and `v`.
+    fn add_stretch(&mut self, locals: &mut Locals, builder: &LawBuilder) {
         let graph = &mut self.model.graph;
         let (s, v) = (
-            graph.symbol(Symbol::Stretch(writing.link)),
-            graph.symbol(Symbol::Rate(writing.link)),
+            graph.symbol(Symbol::Stretch(builder.link)),
+            graph.symbol(Symbol::Rate(builder.link)),
         );
         locals.add(
             "s",
             Ok(Value {
                 expr: s,
-                unit: Some(writing.stretch),
+                unit: Some(builder.stretch),
             }),
         );
         locals.add(
             "v",
             Ok(Value {
                 expr: v,
-                unit: Some(writing.stretch.per(Unit::SECOND)),
+                unit: Some(builder.stretch.per(Unit::SECOND)),
             }),
         );
     }
 
-    /// Adds the terms, states and rates of statements. Mistakes are reported, and what is mistaken left out.
-    fn write(&mut self, body: &[LawStatement], place: &mut Place, writing: &mut Writing) {
+    /// Adds the terms, states and rates of statements. Statements with mistakes are reported and left out.
+    fn add_statements(&mut self, body: &[LawStatement], place: &mut Place, builder: &mut LawBuilder) {
         for statement in body {
             if let LawStatement::State(name, unit) = statement {
-                let value = self.state(name, unit, place, writing);
-                writing.mistaken |= value.is_err();
+                let value = self.state(name, unit, place, builder);
+                builder.mistaken |= value.is_err();
                 place.locals.add(&name.text, value);
             }
         }
         for statement in body {
-            // Each mistake costs its own statement only.
-            writing.mistaken |= self.write_one(statement, place, writing).is_err();
+            // A mistake leaves out its own statement only.
+            builder.mistaken |= self.add_statement(statement, place, builder).is_err();
         }
-        self.require_rates(body, place, writing);
+        self.require_rates(body, place, builder);
     }
 
-    fn write_one(&mut self, statement: &LawStatement, place: &mut Place, writing: &mut Writing) -> Known<()> {
-        let stiffness = writing.force().per(writing.stretch);
+    fn add_statement(&mut self, statement: &LawStatement, place: &mut Place, builder: &mut LawBuilder) -> Resolved<()> {
+        let stiffness = builder.force().per(builder.stretch);
         let damping = stiffness.times(Unit::SECOND);
         match statement {
             LawStatement::Spring(k) => {
                 let k = self.coefficient(k, place, stiffness, "the stiffness of a spring")?;
-                writing.terms.push(Term::Spring(k));
+                builder.terms.push(Term::Spring(k));
             }
             LawStatement::Damper(c) => {
                 let c = self.coefficient(c, place, damping, "the damping of a damper")?;
-                writing.terms.push(Term::Damper(c));
+                builder.terms.push(Term::Damper(c));
             }
             LawStatement::Inerter(b) => {
                 let b = self.coefficient(b, place, damping.times(Unit::SECOND), "the inertance of an inerter")?;
-                writing.terms.push(Term::Inerter(b));
+                builder.terms.push(Term::Inerter(b));
             }
             LawStatement::Force(force) => {
-                let force = self.value_in(force, &place.locals, writing.force(), "a force")?;
-                writing.terms.push(Term::Force(force));
+                let force = self.value_in(force, &place.locals, builder.force(), "a force")?;
+                builder.terms.push(Term::Force(force));
             }
             LawStatement::Let(definition) => {
                 let value = self.value(&definition.value, &place.locals);
-                writing.mistaken |= value.is_err();
+                builder.mistaken |= value.is_err();
                 place.locals.add(&definition.name.text, value);
             }
-            LawStatement::Rate(name, rate) => self.rate(name, rate, place, writing)?,
-            LawStatement::Use(element) => self.write_element(element, place, writing)?,
-            LawStatement::Rolling(span, _) if writing.rolling || !place.inside.is_empty() => {
+            LawStatement::Rate(name, rate) => self.rate(name, rate, place, builder)?,
+            LawStatement::Use(element) => self.expand_element(element, place, builder)?,
+            LawStatement::Rolling(span, _) if builder.rolling || !place.inside.is_empty() => {
                 return Err(self.report(mistakes::second_rolling(*span)));
             }
             LawStatement::If(choice) => {
@@ -185,14 +185,14 @@ impl Resolver<'_> {
                 let home = "a link: an element has no options";
                 return Err(self.report(reading::misplaced_statement(span.unwrap_or_default(), "if", home)));
             }
-            LawStatement::Active => writing.active = true,
+            LawStatement::Active => builder.active = true,
             LawStatement::State(..) | LawStatement::Rolling(..) => {}
         }
         Ok(())
     }
 
     /// The factor of a linear term, which must not vary with the motion.
-    fn coefficient(&mut self, expression: &Expression, place: &Place, unit: Unit, what: &str) -> Known<Expr> {
+    fn coefficient(&mut self, expression: &Expression, place: &Place, unit: Unit, what: &str) -> Resolved<Expr> {
         let expr = self.value_in(expression, &place.locals, unit, what)?;
         let leaves = self.model.graph.symbols([expr]);
         if !leaves.iter().all(|leaf| matches!(leaf, Symbol::Parameter(_))) {
@@ -201,27 +201,27 @@ impl Resolver<'_> {
         Ok(expr)
     }
 
-    fn state(&mut self, name: &Name, unit: &UnitText, place: &Place, writing: &mut Writing) -> Known<Value> {
+    fn state(&mut self, name: &Name, unit: &UnitText, place: &Place, builder: &mut LawBuilder) -> Resolved<Value> {
         let unit = self.coherent(unit, unit.span, |coherent| format!("state {}: {coherent};", name.text))?;
         let full = format!("{}{}", place.prefix, name.text);
-        let index = match (writing.state(&full), writing.rolling) {
+        let index = match (builder.state(&full), builder.rolling) {
             (Some(index), true) if !place.inside.is_empty() => index,
             (_, true) => return Err(self.report(mistakes::rolling_changes_states(name.span))),
             (Some(_), false) => return Err(self.report(mistakes::second_state(name.span, &full, None))),
             (None, false) => {
                 let rate = self.model.graph.constant(0.0);
-                writing.inner.push(Inner { name: full, unit, rate });
-                writing.rated.push(false);
-                writing.inner.len() - 1
+                builder.inner.push(Inner { name: full, unit, rate });
+                builder.rated.push(false);
+                builder.inner.len() - 1
             }
         };
-        let expr = self.model.graph.symbol(Symbol::Inner(writing.link, index as u16));
+        let expr = self.model.graph.symbol(Symbol::Inner(builder.link, index as u16));
         Ok(Value { expr, unit: Some(unit) })
     }
 
-    fn rate(&mut self, name: &Name, rate: &Expression, place: &Place, writing: &mut Writing) -> Known<()> {
-        if writing.rolling {
-            // The states of an element keep their rates; a block of its own cannot give others.
+    fn rate(&mut self, name: &Name, rate: &Expression, place: &Place, builder: &mut LawBuilder) -> Resolved<()> {
+        if builder.rolling {
+            // Inside `rolling`, the states of an element keep their rates, and the block itself cannot give rates.
             let is_own = place.inside.is_empty();
             return if is_own {
                 Err(self.report(mistakes::rolling_changes_states(name.span)))
@@ -229,7 +229,7 @@ impl Resolver<'_> {
                 Ok(())
             };
         }
-        let Some(index) = writing.state(&format!("{}{}", place.prefix, name.text)) else {
+        let Some(index) = builder.state(&format!("{}{}", place.prefix, name.text)) else {
             if matches!(place.locals.get(&name.text), Some(Err(Reported))) {
                 return Err(Reported);
             }
@@ -239,28 +239,28 @@ impl Resolver<'_> {
             let unit = unit.unwrap_or(Unit::NEWTON).to_string();
             return Err(self.report(mistakes::rate_without_state(name.span, &name.text, &unit)));
         };
-        if std::mem::replace(&mut writing.rated[index], true) {
+        if std::mem::replace(&mut builder.rated[index], true) {
             return Err(self.report(mistakes::second_rate(name.span, &name.text)));
         }
-        let unit = writing.inner[index].unit.per(Unit::SECOND);
-        writing.inner[index].rate =
+        let unit = builder.inner[index].unit.per(Unit::SECOND);
+        builder.inner[index].rate =
             self.value_in(rate, &place.locals, unit, &format!("the rate of `{}`", name.text))?;
         Ok(())
     }
 
-    fn require_rates(&mut self, body: &[LawStatement], place: &Place, writing: &Writing) {
+    fn require_rates(&mut self, body: &[LawStatement], place: &Place, builder: &LawBuilder) {
         for statement in body {
             let LawStatement::State(name, _) = statement else {
                 continue;
             };
-            let index = writing.state(&format!("{}{}", place.prefix, name.text));
-            if index.is_some_and(|index| !writing.rated[index]) {
+            let index = builder.state(&format!("{}{}", place.prefix, name.text));
+            if index.is_some_and(|index| !builder.rated[index]) {
                 self.report(mistakes::state_without_rate(name.span, &name.text));
             }
         }
     }
 
-    fn write_element(&mut self, used: &ElementUse, place: &Place, writing: &mut Writing) -> Known<()> {
+    fn expand_element(&mut self, used: &ElementUse, place: &Place, builder: &mut LawBuilder) -> Resolved<()> {
         let name = &used.element;
         let Some(element) = self.elements.get(name.text.as_str()).copied() else {
             if !self.names.unknown.insert(("the elements".into(), name.text.clone())) {
@@ -277,21 +277,21 @@ impl Resolver<'_> {
             return Err(self.report(names::recursive_element(name.span, &inside)));
         }
         let prefix = format!("{}{}.", place.prefix, used.label().text);
-        if let Some(state) = writing
+        if let Some(state) = builder
             .inner
             .iter()
-            .find(|inner| inner.name.starts_with(&prefix) && !writing.rolling)
+            .find(|inner| inner.name.starts_with(&prefix) && !builder.rolling)
         {
             let mistake = mistakes::second_state(used.label().span, &state.name, Some(&name.text));
             return Err(self.report(mistake));
         }
         let mut locals = self.element_arguments(element, used, place)?;
-        self.add_stretch(&mut locals, writing);
-        self.write(&element.body, &mut Place { locals, prefix, inside }, writing);
+        self.add_stretch(&mut locals, builder);
+        self.add_statements(&element.body, &mut Place { locals, prefix, inside }, builder);
         Ok(())
     }
 
-    fn element_arguments(&mut self, element: &Element, used: &ElementUse, place: &Place) -> Known<Locals> {
+    fn element_arguments(&mut self, element: &Element, used: &ElementUse, place: &Place) -> Resolved<Locals> {
         let values: Vec<_> = used
             .arguments
             .iter()

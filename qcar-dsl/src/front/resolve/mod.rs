@@ -1,4 +1,4 @@
-//! The tree to the model graph: options taken, elements written out, names resolved, units checked.
+//! From the tree to the model graph: options are chosen, elements expanded, names resolved and units checked.
 
 use std::collections::BTreeMap;
 
@@ -8,16 +8,16 @@ use crate::front::syntax::{Axle, Element, Statement};
 use crate::model::Model;
 use crate::source::Span;
 
-// First the options.
+// Options of a family.
 pub mod options;
-// Then values and their units.
+// Values and their units.
 mod quantity;
 mod value;
 // Curves through points.
 mod table;
-// What names mean.
+// The meaning of names.
 mod names;
-// Then what is made of them, in the order in which it is resolved.
+// Parameters, derived quantities and coordinates.
 mod declare;
 // Linear combinations of coordinates.
 mod stretch;
@@ -26,24 +26,24 @@ mod law;
 // Points, forces and links.
 mod connect;
 // Outputs and channels.
-mod see;
+mod outputs;
 
 use names::Names;
 use options::Member;
 use value::Value;
 
-/// A mistake has been reported; nothing more is to be said about it. Only [`Resolver::report`] and names whose own
-/// declaration is mistaken give one.
+/// The error of a value whose mistake has been reported already. It comes from [`Resolver::report`], and from names
+/// whose declaration has a mistake.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reported;
 
-/// A thing, or the knowledge that its mistake has been reported.
-pub(crate) type Known<Thing> = Result<Thing, Reported>;
+/// A resolved value, or the fact that its mistake has been reported.
+pub(crate) type Resolved<T> = Result<T, Reported>;
 
-/// A statement with the direction that it stands in; empty outside of all.
-type Placed<'a> = (&'a str, &'a Statement);
+/// A statement with the name of its direction, which is empty outside of directions.
+type StatementOfDirection<'a> = (&'a str, &'a Statement);
 
-/// Resolves one member of a family, or a plain axle. There is a model only where nothing but warnings is found.
+/// Resolves one member of a family, or a plain axle. The model is complete only if all diagnostics are warnings.
 pub fn resolve(axle: &Axle, member: &Member, elements: &[&Element]) -> (Model, Vec<Diagnostic>) {
     let mut resolver = Resolver::new(axle, member);
     resolver.declare_elements(elements);
@@ -62,11 +62,11 @@ pub fn resolve(axle: &Axle, member: &Member, elements: &[&Element]) -> (Model, V
 }
 
 /// Every statement with its direction, in the order of the text.
-fn placed(body: &[Statement]) -> Vec<Placed<'_>> {
+fn placed(body: &[Statement]) -> Vec<StatementOfDirection<'_>> {
     body.iter().flat_map(placed_of).collect()
 }
 
-fn placed_of(statement: &Statement) -> Vec<Placed<'_>> {
+fn placed_of(statement: &Statement) -> Vec<StatementOfDirection<'_>> {
     match statement {
         Statement::Direction(direction) => direction
             .body
@@ -77,16 +77,16 @@ fn placed_of(statement: &Statement) -> Vec<Placed<'_>> {
     }
 }
 
-/// A model under way.
+/// A model that is being resolved.
 struct Resolver<'a> {
     model: Model,
     names: Names,
     elements: BTreeMap<&'a str, &'a Element>,
     /// The values of `Model::definitions`.
     definitions: Vec<Value>,
-    /// Where derived quantities are declared, whether they have been reached or not.
+    /// Positions and names of all derived quantities, including those that are not resolved yet.
     later: Vec<(Span, String)>,
-    /// The text says what is to be seen, even if mistakenly.
+    /// True if the text declares outputs, even with mistakes.
     declares_outputs: bool,
     found: Vec<Diagnostic>,
 }
@@ -124,7 +124,7 @@ impl<'a> Resolver<'a> {
         }
     }
 
-    /// Adds a mistake; that of an element once, however often it is written out.
+    /// Adds a mistake. A mistake in an element is added once, however often the element is used.
     fn report(&mut self, mistake: Diagnostic) -> Reported {
         if !self.found.iter().any(|known| known.repeats(&mistake)) {
             self.found.push(mistake);
@@ -146,9 +146,9 @@ impl<'a> Resolver<'a> {
         }
     }
 
-    /// What nothing uses. A member of a family may leave derived quantities to others.
+    /// Reports unused names. A derived quantity of a family may be used by other members only.
     fn unused(&mut self, plain: bool) {
-        // What is mistaken may be what would have used them.
+        // A statement with a mistake may be the one that uses them.
         if !self.found.is_empty() {
             return;
         }

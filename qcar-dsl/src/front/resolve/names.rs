@@ -1,29 +1,30 @@
-//! The names of a model: parameters and derived quantities, and in each direction what moves, connects and pushes.
+//! The names of a model: parameters and derived quantities, and in each direction coordinates, points, links and
+//! forces.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::value::{Locals, Value};
-use super::{Known, Reported, Resolver};
+use super::{Reported, Resolved, Resolver};
 use crate::diagnostic::{Diagnostic, names as mistakes};
 use crate::expr::{CoordinateId, LinkId, Symbol};
 use crate::front::syntax::{Dotted, Name};
 use crate::source::Span;
 use crate::units::Unit;
 
-/// What a name without direction means.
+/// The meaning of a name without a direction.
 #[derive(Clone, Copy, Debug)]
 pub enum Global {
     /// By its place in `Model::parameters`.
     Parameter(u16),
     /// By its place in `Model::definitions`.
     Definition(u16),
-    /// Its own declaration is mistaken, so its uses are not blamed.
+    /// Its declaration has a mistake, so its uses are not reported.
     Broken,
 }
 
-/// What a name of a direction means.
+/// The meaning of a name of a direction.
 #[derive(Clone, Copy, Debug)]
-pub enum Thing {
+pub enum DirectionName {
     /// A mass, node, road or motion, or a point of it.
     Coordinate(CoordinateId),
     /// A point that several coordinates move, by its place in `Model::points`.
@@ -34,11 +35,11 @@ pub enum Thing {
     Force(u16),
     /// A gravity.
     Gravity,
-    /// Its own declaration is mistaken, so its uses are not blamed.
+    /// Its declaration has a mistake, so its uses are not reported.
     Broken,
 }
 
-/// What a name in a stretch means.
+/// The meaning of a name in a stretch.
 #[derive(Clone, Copy, Debug)]
 pub enum Moving {
     /// A mass, node, road or motion.
@@ -47,40 +48,41 @@ pub enum Moving {
     Point(u16),
 }
 
-impl Thing {
+impl DirectionName {
     fn kind(self) -> &'static str {
         match self {
-            Thing::Coordinate(_) | Thing::Point(_) => "a point that moves",
-            Thing::Link(_) => "a link",
-            Thing::Force(_) => "a force input",
-            Thing::Gravity => "a gravity",
-            Thing::Broken => "mistaken",
+            DirectionName::Coordinate(_) | DirectionName::Point(_) => "a point that moves",
+            DirectionName::Link(_) => "a link",
+            DirectionName::Force(_) => "a force input",
+            DirectionName::Gravity => "a gravity",
+            DirectionName::Broken => "mistaken",
         }
     }
 }
 
-/// The names of a direction, with where they are declared.
-pub type Things = BTreeMap<String, (Span, Thing)>;
+/// The names of a direction, with the positions of their declarations.
+pub type DirectionNames = BTreeMap<String, (Span, DirectionName)>;
 
 /// The names of a model.
 #[derive(Debug, Default)]
 pub struct Names {
-    /// Parameters and derived quantities, with where they are declared.
+    /// Parameters and derived quantities, with the positions of their declarations.
     pub globals: BTreeMap<String, (Span, Global)>,
     /// In the order of the text.
-    pub directions: Vec<(String, Things)>,
-    /// What options have switched off, with the options.
+    pub directions: Vec<(String, DirectionNames)>,
+    /// Names that options have switched off, with the options.
     pub off: BTreeMap<String, String>,
-    /// Parameters, derived quantities and elements that something uses.
+    /// Parameters, derived quantities and elements that are used.
     pub used: BTreeSet<String>,
-    /// Undeclared names, with the place where they were expected: the first use is reported, since one declaration is
-    /// missing or misspelt, and not each that would use it.
+    /// Undeclared names, with the place where they were expected. Only the first use is reported, since one missing
+    /// declaration is one mistake.
     pub unknown: BTreeSet<(String, String)>,
 }
 
 impl Names {
-    /// The thing of a name, as seen from a direction; from outside of all, in whichever direction has it.
-    pub fn find(&self, name: &Dotted, direction: &str) -> Option<(Span, Thing)> {
+    /// The meaning of a name used in a direction. Outside of directions, it is that of the first direction which has
+    /// the name.
+    pub fn find(&self, name: &Dotted, direction: &str) -> Option<(Span, DirectionName)> {
         match name.names.as_slice() {
             [name] if direction.is_empty() => self.everywhere(&name.text).first().map(|(_, found)| *found),
             [name] => self.direction(direction)?.get(&name.text).copied(),
@@ -89,7 +91,7 @@ impl Names {
         }
     }
 
-    fn direction(&self, name: &str) -> Option<&Things> {
+    fn direction(&self, name: &str) -> Option<&DirectionNames> {
         self.directions
             .iter()
             .find(|(known, _)| known == name)
@@ -97,7 +99,7 @@ impl Names {
     }
 
     /// The directions that have a name.
-    fn everywhere(&self, name: &str) -> Vec<(&str, (Span, Thing))> {
+    fn everywhere(&self, name: &str) -> Vec<(&str, (Span, DirectionName))> {
         self.directions
             .iter()
             .filter_map(|(home, names)| Some((home.as_str(), *names.get(name)?)))
@@ -112,7 +114,7 @@ impl Names {
 }
 
 impl Resolver<'_> {
-    /// Declares a parameter or derived quantity. Which of two of a name its uses mean is not known.
+    /// Declares a parameter or derived quantity. If a name is declared twice, its uses are ambiguous and not reported.
     pub fn declare_global(&mut self, name: &Name, global: Global) {
         if let Some((first, known)) = self.names.globals.get_mut(&name.text) {
             *known = Global::Broken;
@@ -123,8 +125,9 @@ impl Resolver<'_> {
         self.names.globals.insert(name.text.clone(), (name.span, global));
     }
 
-    /// Declares something in a direction. A stretch knows parameters too, so they share their names with none.
-    pub fn declare_thing(&mut self, name: &Name, direction: &str, thing: Thing) {
+    /// Declares a name in a direction. A stretch can use coordinates and parameters, so these must have different
+    /// names.
+    pub fn declare_thing(&mut self, name: &Name, direction: &str, thing: DirectionName) {
         if !self.names.directions.iter().any(|(known, _)| known == direction) {
             self.names.directions.push((direction.to_string(), BTreeMap::new()));
         }
@@ -133,7 +136,7 @@ impl Resolver<'_> {
             .direction(direction)
             .and_then(|names| names.get(&name.text))
             .map(|(span, _)| *span);
-        let moves = matches!(thing, Thing::Coordinate(_) | Thing::Point(_));
+        let moves = matches!(thing, DirectionName::Coordinate(_) | DirectionName::Point(_));
         let global = self
             .names
             .globals
@@ -152,13 +155,13 @@ impl Resolver<'_> {
         if let Some((_, names)) = home {
             let known = names.entry(name.text.clone()).or_insert((name.span, thing));
             if own.is_some() {
-                known.1 = Thing::Broken;
+                known.1 = DirectionName::Broken;
             }
         }
     }
 
     /// The value of a name in an expression.
-    pub fn named(&mut self, name: &Dotted, locals: &Locals) -> Known<Value> {
+    pub fn named(&mut self, name: &Dotted, locals: &Locals) -> Resolved<Value> {
         if let Some(input) = self.input(name, locals) {
             return Ok(input);
         }
@@ -189,7 +192,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// The force input of a name, in a law that sees it; what the law or the model calls so comes first.
+    /// The force input of a name, in a law that can use it. Names of the law and of the model take precedence.
     fn input(&mut self, name: &Dotted, locals: &Locals) -> Option<Value> {
         let home = locals.home.as_ref().filter(|_| !locals.closed)?;
         if let [single] = name.names.as_slice()
@@ -197,7 +200,7 @@ impl Resolver<'_> {
         {
             return None;
         }
-        let Some((_, Thing::Force(place))) = self.names.find(name, home) else {
+        let Some((_, DirectionName::Force(place))) = self.names.find(name, home) else {
             return None;
         };
         Some(Value {
@@ -206,12 +209,12 @@ impl Resolver<'_> {
         })
     }
 
-    /// `x.bushing.stretch` or `x.bushing.rate`, in a law that sees the links of the model.
-    fn motion_of_link(&mut self, name: &Dotted, locals: &Locals) -> Option<Known<Value>> {
+    /// `x.bushing.stretch` or `x.bushing.rate`, in a law that can use the links of the model.
+    fn motion_of_link(&mut self, name: &Dotted, locals: &Locals) -> Option<Resolved<Value>> {
         let home = locals.home.as_ref().filter(|_| !locals.closed)?;
         let (quantity, owner) = name.names.split_last()?;
         let owner = Dotted { names: owner.to_vec() };
-        let (_, Thing::Link(id)) = self.names.find(&owner, home)? else {
+        let (_, DirectionName::Link(id)) = self.names.find(&owner, home)? else {
             return None;
         };
         let unit = self.model.links[usize::from(id.0)].unit;
@@ -228,7 +231,7 @@ impl Resolver<'_> {
         Some(Ok(Value { expr, unit: Some(unit) }))
     }
 
-    /// Says why a name has no value here.
+    /// Reports why a name has no value here.
     fn no_value(&mut self, name: &Dotted, locals: &Locals) -> Reported {
         let (span, text) = (name.span(), name.to_string());
         let global = self.names.globals.get(&text).copied();
@@ -236,14 +239,14 @@ impl Resolver<'_> {
         if !locals.closed && self.names.unknown.contains(&in_model) {
             return Reported;
         }
-        if let Some((_, Thing::Broken)) = self.names.find(name, "") {
+        if let Some((_, DirectionName::Broken)) = self.names.find(name, "") {
             return Reported;
         }
         let mistake = if let Some((_, global)) = global {
             mistakes::element_is_closed(span, &text, &self.unit_of(global))
         } else if text == "s" || text == "v" {
             mistakes::law_variable_outside(span, &text)
-        } else if let Some((_, Thing::Coordinate(_) | Thing::Point(_))) = self.names.find(name, "") {
+        } else if let Some((_, DirectionName::Coordinate(_) | DirectionName::Point(_))) = self.names.find(name, "") {
             mistakes::coordinate_in_expression(span, &text)
         } else if let Some(options) = self.names.off.get(&text) {
             mistakes::switched_off(span, &text, options)
@@ -273,17 +276,17 @@ impl Resolver<'_> {
         local.chain(global).collect()
     }
 
-    /// What moves by a name in a stretch; `None` for a parameter or derived quantity.
-    pub fn moving_of(&mut self, name: &Dotted, direction: &str) -> Known<Option<Moving>> {
+    /// The coordinate or point of a name in a stretch; `None` for a parameter or derived quantity.
+    pub fn moving_of(&mut self, name: &Dotted, direction: &str) -> Resolved<Option<Moving>> {
         match self.names.find(name, direction) {
-            Some((_, Thing::Coordinate(coordinate))) => Ok(Some(Moving::Coordinate(coordinate))),
-            Some((_, Thing::Point(point))) => Ok(Some(Moving::Point(point))),
+            Some((_, DirectionName::Coordinate(coordinate))) => Ok(Some(Moving::Coordinate(coordinate))),
+            Some((_, DirectionName::Point(point))) => Ok(Some(Moving::Point(point))),
             None if name.names.len() == 1 && self.names.globals.contains_key(&name.names[0].text) => Ok(None),
             _ => Err(self.no_thing(name, direction, "a point that moves", "link spring: body - wheel { … }")),
         }
     }
 
-    /// Says why a name is not the thing that is expected in a direction.
+    /// Reports why a name is not what is expected in a direction.
     pub fn no_thing(&mut self, name: &Dotted, direction: &str, expected: &str, example: &str) -> Reported {
         let (span, text) = (name.span(), name.to_string());
         let last = name.names.last().map(|name| name.text.clone()).unwrap_or_default();
@@ -292,11 +295,11 @@ impl Resolver<'_> {
             _ => direction,
         };
         let mistake = match self.names.find(name, direction) {
-            Some((_, Thing::Broken)) => return Reported,
+            Some((_, DirectionName::Broken)) => return Reported,
             Some((_, thing)) => mistakes::wrong_kind(span, &text, thing.kind(), expected, example),
             None => match self.names.off.get(&last) {
                 Some(options) => mistakes::switched_off(span, &last, options),
-                // An unknown factor of a stretch is reported as a value that the model lacks.
+                // An unknown factor of a stretch has been reported as an unknown value.
                 None if self.names.unknown.contains(&(String::new(), last.clone())) => return Reported,
                 None if !self.names.unknown.insert((home.to_string(), last)) => return Reported,
                 None => self.unknown(name, direction),
@@ -323,8 +326,8 @@ impl Resolver<'_> {
         mistakes::unknown_name(last.span, &last.text, &place, &self.names.known_things(home))
     }
 
-    /// The one direction that has a name which is said outside of all directions.
-    pub fn unambiguous(&mut self, name: &Dotted) -> Known<()> {
+    /// Fails if a name that is used outside of directions exists in several of them.
+    pub fn unambiguous(&mut self, name: &Dotted) -> Resolved<()> {
         let [name] = name.names.as_slice() else { return Ok(()) };
         let homes: Vec<String> = self
             .names

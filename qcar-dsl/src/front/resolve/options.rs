@@ -15,11 +15,11 @@ pub struct Member {
     pub body: Vec<Statement>,
     /// The value of each option.
     pub choices: Choices,
-    /// Names that only branches declare that were not taken, with the options that decided so.
+    /// Names that are declared only in branches that were not chosen, with the options that decided this.
     pub off: BTreeMap<String, String>,
 }
 
-/// Takes what an axle chooses: the family's statements, then the axle's own.
+/// Selects the statements that the options of an axle choose: those of the family, then those of the axle.
 pub fn select(axle: &Axle, family: Option<&Axle>, found: &mut Vec<Diagnostic>) -> Member {
     let options = Options::of(family.unwrap_or(axle), found);
     let choices = options.chosen_by(axle, found);
@@ -98,7 +98,7 @@ impl<'a> Options<'a> {
         self.options.iter().map(|choice| choice.name.text.clone()).collect()
     }
 
-    /// Every test of every branch, taken or not, asks about an option and one of its values.
+    /// Checks that every test in every branch names an option and one of its values.
     fn check_conditions(&self, family: &Axle, found: &mut Vec<Diagnostic>) {
         let mut tests = Vec::new();
         self.requirements
@@ -123,7 +123,7 @@ impl<'a> Options<'a> {
         found.extend(unused.map(|choice| names::unused_option(choice.name.span, &choice.name.text)));
     }
 
-    /// What an axle says, and the defaults for what it does not.
+    /// The choices of an axle; options that it does not choose have their defaults.
     fn chosen_by(&self, axle: &Axle, found: &mut Vec<Diagnostic>) -> Choices {
         let mut chosen: BTreeMap<&str, &Name> = BTreeMap::new();
         for statement in &axle.body {
@@ -218,7 +218,7 @@ fn tests_of<'a>(condition: &'a Logic<OptionTest>, tests: &mut Vec<&'a OptionTest
     }
 }
 
-/// Also finds options where they mean nothing: a branch cannot declare what decides about branches.
+/// Collects the tests, and reports options that are declared inside a branch.
 fn tests_of_statements<'a>(body: &'a [Statement], tests: &mut Vec<&'a OptionTest>, found: &mut Vec<Diagnostic>) {
     for statement in body {
         match statement {
@@ -278,7 +278,7 @@ fn holds(condition: &Logic<OptionTest>, choices: &Choices) -> bool {
     }
 }
 
-/// The options that a condition asks about with their values, `subframe = off`.
+/// The options in a condition with their values, `subframe = off`.
 fn state(condition: &Logic<OptionTest>, choices: &Choices) -> Vec<String> {
     let mut tests = Vec::new();
     tests_of(condition, &mut tests);
@@ -290,7 +290,7 @@ fn state(condition: &Logic<OptionTest>, choices: &Choices) -> Vec<String> {
         .collect()
 }
 
-/// Takes branches, and keeps what the others would have declared.
+/// Selects branches, and collects the names that the others would have declared.
 struct Selection<'a> {
     choices: &'a Choices,
     off: BTreeMap<String, String>,
@@ -334,7 +334,7 @@ impl Selection<'_> {
         chosen
     }
 
-    /// The branch whose condition is the first to hold; the others are switched off.
+    /// The first branch whose condition holds; the others are switched off.
     fn branch<'b, Part>(
         &mut self,
         choice: &'b If<Part>,
@@ -359,7 +359,7 @@ impl Selection<'_> {
     }
 }
 
-/// What statements declare, whatever is inside them.
+/// Collects all names that statements and their inner statements declare.
 fn declared(body: &[Statement], why: &str, off: &mut BTreeMap<String, String>) {
     for statement in body {
         match statement {

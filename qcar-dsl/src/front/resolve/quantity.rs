@@ -1,6 +1,6 @@
-//! Units and numbers as written, to values in SI.
+//! From units and numbers as written to values in SI.
 
-use super::{Known, Resolver};
+use super::{Resolved, Resolver};
 use crate::diagnostic::reading::number_too_large;
 use crate::diagnostic::units as mistakes;
 use crate::front::syntax::{Number, UnitText};
@@ -8,8 +8,8 @@ use crate::source::Span;
 use crate::units::{Symbol, Unit, symbol};
 
 impl Resolver<'_> {
-    /// The size and the coherent unit of a unit as written.
-    pub fn unit(&mut self, text: &UnitText) -> Known<Symbol> {
+    /// The size in SI and the coherent unit of a unit as written.
+    pub fn unit(&mut self, text: &UnitText) -> Resolved<Symbol> {
         let mut whole = Symbol {
             multiply: 1.0,
             divide: 1.0,
@@ -34,7 +34,7 @@ impl Resolver<'_> {
     }
 
     /// The unit of a declaration, which must be coherent; `example` writes the declaration in another unit.
-    pub fn coherent(&mut self, text: &UnitText, span: Span, example: impl Fn(&str) -> String) -> Known<Unit> {
+    pub fn coherent(&mut self, text: &UnitText, span: Span, example: impl Fn(&str) -> String) -> Resolved<Unit> {
         let symbol = self.unit(text)?;
         if symbol.multiply != symbol.divide {
             let is_angle = text.factors.iter().any(|factor| factor.symbol.text == "deg");
@@ -49,8 +49,8 @@ impl Resolver<'_> {
         Ok(symbol.unit)
     }
 
-    /// A number in SI, with its unit; `None` where it is a plain number.
-    pub fn number(&mut self, number: &Number) -> Known<(f64, Option<Unit>)> {
+    /// A number in SI, with its unit; `None` for a plain number.
+    pub fn number(&mut self, number: &Number) -> Resolved<(f64, Option<Unit>)> {
         let symbol = self.unit(&number.unit)?;
         let value = number.value * symbol.multiply / symbol.divide;
         if !value.is_finite() {
@@ -60,7 +60,7 @@ impl Resolver<'_> {
     }
 
     /// A number that belongs to a declaration: a plain one is in the declared unit.
-    pub fn number_in(&mut self, number: &Number, unit: Unit, what: &str) -> Known<f64> {
+    pub fn number_in(&mut self, number: &Number, unit: Unit, what: &str) -> Resolved<f64> {
         match self.number(number)? {
             (value, None) => Ok(value),
             (value, Some(own)) if own == unit => Ok(value),

@@ -1,8 +1,8 @@
 //! The stretch of a link: a linear combination of coordinates with coefficients in parameters.
 
-use super::names::{Moving, Thing};
+use super::names::{DirectionName, Moving};
 use super::value::{Locals, Value};
-use super::{Known, Resolver};
+use super::{Resolved, Resolver};
 use crate::diagnostic::units as mistakes;
 use crate::expr::{CoordinateId, Expr};
 use crate::front::syntax::{Expression, ExpressionKind, Operator};
@@ -13,13 +13,13 @@ use crate::units::Unit;
 pub struct Combination {
     /// In the order of the text.
     pub terms: Vec<(CoordinateId, Expr)>,
-    /// Of the sum; `None` for a sum that is always zero.
+    /// Unit of the sum; `None` for a sum that is always zero.
     pub unit: Option<Unit>,
 }
 
 impl Resolver<'_> {
     /// Extracts the combination from an expression; names without a direction are those of `direction`.
-    pub fn combination(&mut self, expression: &Expression, direction: &str) -> Known<Combination> {
+    pub fn combination(&mut self, expression: &Expression, direction: &str) -> Resolved<Combination> {
         match &expression.kind {
             ExpressionKind::Name(name) => {
                 let Some(moving) = self.moving_of(name, direction)? else {
@@ -54,7 +54,7 @@ impl Resolver<'_> {
         left: &Expression,
         right: &Expression,
         direction: &str,
-    ) -> Known<Combination> {
+    ) -> Resolved<Combination> {
         let (moves_left, moves_right) = (self.moves(left, direction), self.moves(right, direction));
         match operator {
             Operator::Add | Operator::Subtract => {
@@ -72,8 +72,8 @@ impl Resolver<'_> {
         }
     }
 
-    /// Nothing moves here: only a literal zero may stand in a stretch.
-    fn constant_part(&mut self, expression: &Expression) -> Known<Combination> {
+    /// A part of a stretch without coordinates: only a literal zero is allowed.
+    fn constant_part(&mut self, expression: &Expression) -> Resolved<Combination> {
         match self.value(expression, &Locals::default())?.unit {
             None => Ok(Combination {
                 terms: vec![],
@@ -93,7 +93,7 @@ impl Resolver<'_> {
         Combination { terms, ..combination }
     }
 
-    fn sum(&mut self, a: Combination, a_span: Span, b: Combination, b_span: Span) -> Known<Combination> {
+    fn sum(&mut self, a: Combination, a_span: Span, b: Combination, b_span: Span) -> Resolved<Combination> {
         let expr = self.model.graph.constant(0.0);
         let (left, right) = (Value { expr, unit: a.unit }, Value { expr, unit: b.unit });
         let unit = self.agree(left, a_span, right, b_span, "the stretch is a sum")?;
@@ -108,7 +108,7 @@ impl Resolver<'_> {
         Ok(Combination { terms, unit })
     }
 
-    fn scaled(&mut self, moving: &Expression, by: &Expression, divide: bool, direction: &str) -> Known<Combination> {
+    fn scaled(&mut self, moving: &Expression, by: &Expression, divide: bool, direction: &str) -> Resolved<Combination> {
         let (combination, factor) = (self.combination(moving, direction), self.value(by, &Locals::default()));
         let (combination, factor) = (combination?, factor?);
         let graph = &mut self.model.graph;
@@ -140,13 +140,13 @@ impl Resolver<'_> {
         })
     }
 
-    /// Whether a coordinate stands in the expression.
+    /// True if the expression contains a coordinate.
     fn moves(&self, expression: &Expression, direction: &str) -> bool {
         match &expression.kind {
             ExpressionKind::Number(_) => false,
             ExpressionKind::Name(name) => {
                 let found = self.names.find(name, direction);
-                matches!(found, Some((_, Thing::Coordinate(_) | Thing::Point(_))))
+                matches!(found, Some((_, DirectionName::Coordinate(_) | DirectionName::Point(_))))
             }
             ExpressionKind::Negative(operand) => self.moves(operand, direction),
             ExpressionKind::Binary(_, a, b) => self.moves(a, direction) || self.moves(b, direction),

@@ -1,19 +1,19 @@
 //! Tables: curves through points, their units checked.
 
 use super::value::{Locals, Value};
-use super::{Known, Resolver};
+use super::{Resolved, Resolver};
 use crate::diagnostic::{tables, units as mistakes};
 use crate::expr::{Curve, Expr};
 use crate::front::syntax::{List, Table};
 use crate::source::Span;
 use crate::units::Unit;
 
-/// More points than a measured curve has, or a reader can follow.
+/// Largest number of points: measured curves have fewer, and a reader could not follow more.
 const MOST: usize = 64;
 
 impl Resolver<'_> {
-    /// The ordinate of a curve; through two points it is a straight line.
-    pub fn table(&mut self, table: &Table, locals: &Locals) -> Known<Value> {
+    /// The ordinate of a curve. A curve through two points is a straight line.
+    pub fn table(&mut self, table: &Table, locals: &Locals) -> Resolved<Value> {
         let x = self.value(&table.x, locals);
         let (knots, values) = (self.entries(&table.knots, locals), self.entries(&table.values, locals));
         let (x, knots, values) = (x?, knots?, values?);
@@ -41,13 +41,13 @@ impl Resolver<'_> {
         Ok(Value { expr, unit })
     }
 
-    fn entries(&mut self, list: &List, locals: &Locals) -> Known<Vec<Value>> {
-        let entries: Vec<Known<Value>> = list.entries.iter().map(|entry| self.value(entry, locals)).collect();
+    fn entries(&mut self, list: &List, locals: &Locals) -> Resolved<Vec<Value>> {
+        let entries: Vec<Resolved<Value>> = list.entries.iter().map(|entry| self.value(entry, locals)).collect();
         entries.into_iter().collect()
     }
 
-    /// As many abscissae as ordinates, and neither too few nor too many.
-    fn points_agree(&mut self, table: &Table) -> Known<()> {
+    /// Checks that there are as many abscissae as ordinates, and that their number is allowed.
+    fn points_agree(&mut self, table: &Table) -> Resolved<()> {
         let (knots, values) = (table.knots.entries.len(), table.values.entries.len());
         if knots != values {
             let mistake = tables::lengths_differ((table.knots.span, knots), (table.values.span, values));
@@ -59,14 +59,14 @@ impl Resolver<'_> {
         Ok(())
     }
 
-    /// The unit of something and of all entries of a list; literal zeros fit to any.
+    /// The common unit of a value and of all entries of a list; a literal zero fits any unit.
     fn agree_with(
         &mut self,
         first: (Span, Option<Unit>),
         list: &List,
         values: &[Value],
         what: &str,
-    ) -> Known<Option<Unit>> {
+    ) -> Resolved<Option<Unit>> {
         let (mut known, mut agrees) = (first, Ok(()));
         for (entry, value) in list.entries.iter().zip(values) {
             known = match (known, value.unit) {
@@ -83,7 +83,7 @@ impl Resolver<'_> {
     }
 
     /// The abscissae as numbers.
-    fn increasing(&mut self, list: &List, values: &[Value]) -> Known<Vec<f64>> {
+    fn increasing(&mut self, list: &List, values: &[Value]) -> Resolved<Vec<f64>> {
         let mut knots: Vec<f64> = Vec::new();
         for (entry, value) in list.entries.iter().zip(values) {
             let Some(knot) = self.model.graph.as_constant(value.expr) else {

@@ -1,6 +1,6 @@
-//! Expressions of the tree to expressions of the graph, with their units.
+//! From expressions of the tree to expressions of the graph, with their units.
 
-use super::{Known, Reported, Resolver};
+use super::{Reported, Resolved, Resolver};
 use crate::diagnostic::{names, units as mistakes};
 use crate::expr::{Expr, Function};
 use crate::front::parse::FUNCTIONS;
@@ -8,10 +8,10 @@ use crate::front::syntax::{Comparison, Expression, ExpressionKind, Logic, Name, 
 use crate::source::Span;
 use crate::units::Unit;
 
-/// An expression with its unit. A literal zero has none: it is zero of anything.
+/// An expression with its unit. A literal zero has none, since it is zero in any unit.
 #[derive(Clone, Copy, Debug)]
 pub struct Value {
-    /// In the graph of the model.
+    /// The expression in the graph of the model.
     pub expr: Expr,
     /// `None` for a literal zero.
     pub unit: Option<Unit>,
@@ -28,25 +28,25 @@ impl Value {
     }
 }
 
-/// What the surroundings of an expression add to the names of the model.
+/// Local names that an expression can use in addition to those of the model.
 #[derive(Clone, Debug, Default)]
 pub struct Locals {
-    /// The latest of a name counts; `None` for one whose own declaration is mistaken.
+    /// Names with their values; the last entry of a name counts. `None` if the declaration of a name has a mistake.
     pub names: Vec<(String, Option<Value>)>,
-    /// The names of the model are out of sight, as in an element.
+    /// True if the names of the model cannot be used, as in an element.
     pub closed: bool,
-    /// The direction whose force inputs are in sight, as in the law of a link.
+    /// The direction whose force inputs can be used, as in the law of a link.
     pub home: Option<String>,
 }
 
 impl Locals {
     /// A name with its value.
-    pub fn add(&mut self, name: &str, value: Known<Value>) {
+    pub fn add(&mut self, name: &str, value: Resolved<Value>) {
         self.names.push((name.to_string(), value.ok()));
     }
 
     /// The value of a name, if there is such a name.
-    pub fn get(&self, name: &str) -> Option<Known<Value>> {
+    pub fn get(&self, name: &str) -> Option<Resolved<Value>> {
         let (_, value) = self.names.iter().rev().find(|(known, _)| known == name)?;
         Some(value.ok_or(Reported))
     }
@@ -54,22 +54,22 @@ impl Locals {
 
 impl Resolver<'_> {
     /// An expression that must be in a unit; `what` is its subject in the message.
-    pub fn value_in(&mut self, expression: &Expression, locals: &Locals, unit: Unit, what: &str) -> Known<Expr> {
+    pub fn value_in(&mut self, expression: &Expression, locals: &Locals, unit: Unit, what: &str) -> Resolved<Expr> {
         let value = self.value(expression, locals)?;
         self.require_unit(value, expression.span, unit, what)?;
         Ok(value.expr)
     }
 
     /// A value must be in a unit.
-    pub fn require_unit(&mut self, value: Value, span: Span, unit: Unit, what: &str) -> Known<()> {
+    pub fn require_unit(&mut self, value: Value, span: Span, unit: Unit, what: &str) -> Resolved<()> {
         if value.unit.is_none_or(|own| own == unit) {
             return Ok(());
         }
         Err(self.report(mistakes::wrong_unit(span, what, &unit.to_string(), &value.unit_text())))
     }
 
-    /// An expression, whatever its unit. What is constant in it must be a number.
-    pub fn value(&mut self, expression: &Expression, locals: &Locals) -> Known<Value> {
+    /// The value of an expression in any unit. Its constant parts must be finite.
+    pub fn value(&mut self, expression: &Expression, locals: &Locals) -> Resolved<Value> {
         let value = self.any_value(expression, locals)?;
         match self.model.graph.as_constant(value.expr) {
             Some(constant) if !constant.is_finite() => {
@@ -79,7 +79,7 @@ impl Resolver<'_> {
         }
     }
 
-    fn any_value(&mut self, expression: &Expression, locals: &Locals) -> Known<Value> {
+    fn any_value(&mut self, expression: &Expression, locals: &Locals) -> Resolved<Value> {
         match &expression.kind {
             ExpressionKind::Number(number) => {
                 let (value, unit) = self.number(number)?;
@@ -114,7 +114,7 @@ impl Resolver<'_> {
         then: &Expression,
         otherwise: &Expression,
         locals: &Locals,
-    ) -> Known<Value> {
+    ) -> Resolved<Value> {
         let (a, b) = (self.value(then, locals), self.value(otherwise, locals));
         let (a, b) = (a?, b?);
         let unit = self.agree(a, then.span, b, otherwise.span, "the branches of an `if` are")?;
@@ -124,7 +124,13 @@ impl Resolver<'_> {
         })
     }
 
-    fn binary(&mut self, operator: Operator, left: &Expression, right: &Expression, locals: &Locals) -> Known<Value> {
+    fn binary(
+        &mut self,
+        operator: Operator,
+        left: &Expression,
+        right: &Expression,
+        locals: &Locals,
+    ) -> Resolved<Value> {
         let (a, b) = (self.value(left, locals), self.value(right, locals));
         let (a, b) = (a?, b?);
         let graph = &mut self.model.graph;
@@ -164,7 +170,7 @@ impl Resolver<'_> {
         }
     }
 
-    fn power(&mut self, base: Value, base_span: Span, exponent: Value, span: Span) -> Known<Value> {
+    fn power(&mut self, base: Value, base_span: Span, exponent: Value, span: Span) -> Resolved<Value> {
         self.require_unit(exponent, span, Unit::ONE, "an exponent")?;
         let constant = self.model.graph.as_constant(exponent.expr);
         let unit = match (base.unit, constant) {
@@ -183,8 +189,8 @@ impl Resolver<'_> {
         Ok(Value { expr, unit })
     }
 
-    /// The unit of two values that must have the same; a literal zero fits to any.
-    pub fn agree(&mut self, a: Value, a_span: Span, b: Value, b_span: Span, what: &str) -> Known<Option<Unit>> {
+    /// The common unit of two values; a literal zero fits any unit.
+    pub fn agree(&mut self, a: Value, a_span: Span, b: Value, b_span: Span, what: &str) -> Resolved<Option<Unit>> {
         match (a.unit, b.unit) {
             (Some(left), Some(right)) if left != right => {
                 let sides = ((a_span, left.to_string()), (b_span, right.to_string()));
@@ -194,8 +200,8 @@ impl Resolver<'_> {
         }
     }
 
-    fn call(&mut self, function: &Name, arguments: &[Expression], locals: &Locals) -> Known<Value> {
-        let values: Vec<Known<Value>> = arguments.iter().map(|argument| self.value(argument, locals)).collect();
+    fn call(&mut self, function: &Name, arguments: &[Expression], locals: &Locals) -> Resolved<Value> {
+        let values: Vec<Resolved<Value>> = arguments.iter().map(|argument| self.value(argument, locals)).collect();
         let expected: &[&str] = match function.text.as_str() {
             "min" | "max" => &["a", "b"],
             "pow" => &["base", "exponent"],
@@ -207,7 +213,7 @@ impl Resolver<'_> {
             let mistake = names::wrong_arguments(function.span, &function.text, &expected, values.len());
             return Err(self.report(mistake));
         }
-        let values = values.into_iter().collect::<Known<Vec<Value>>>()?;
+        let values = values.into_iter().collect::<Resolved<Vec<Value>>>()?;
         let spans: Vec<Span> = arguments.iter().map(|argument| argument.span).collect();
         match *values.as_slice() {
             [a, b] => self.call_of_two(&function.text, (a, spans[0]), (b, spans[1])),
@@ -215,7 +221,7 @@ impl Resolver<'_> {
         }
     }
 
-    fn call_of_two(&mut self, function: &str, a: (Value, Span), b: (Value, Span)) -> Known<Value> {
+    fn call_of_two(&mut self, function: &str, a: (Value, Span), b: (Value, Span)) -> Resolved<Value> {
         if function == "pow" {
             return self.power(a.0, a.1, b.0, b.1);
         }
@@ -230,7 +236,7 @@ impl Resolver<'_> {
         Ok(Value { expr, unit })
     }
 
-    fn call_of_one(&mut self, name: &str, argument: Value, span: Span) -> Known<Value> {
+    fn call_of_one(&mut self, name: &str, argument: Value, span: Span) -> Resolved<Value> {
         let (function, unit) = match name {
             "abs" => (Function::Abs, argument.unit),
             "sign" => (Function::Sign, Some(Unit::ONE)),
@@ -256,8 +262,14 @@ impl Resolver<'_> {
         })
     }
 
-    /// `then` where the condition holds, else `otherwise`.
-    fn choose(&mut self, condition: &Logic<Comparison>, then: Expr, otherwise: Expr, locals: &Locals) -> Known<Expr> {
+    /// `then` if the condition holds, else `otherwise`.
+    fn choose(
+        &mut self,
+        condition: &Logic<Comparison>,
+        then: Expr,
+        otherwise: Expr,
+        locals: &Locals,
+    ) -> Resolved<Expr> {
         match condition {
             Logic::Test(test) => self.compare(test, then, otherwise, locals),
             Logic::Not(part) => self.choose(part, otherwise, then, locals),
@@ -272,7 +284,7 @@ impl Resolver<'_> {
         }
     }
 
-    fn compare(&mut self, test: &Comparison, then: Expr, otherwise: Expr, locals: &Locals) -> Known<Expr> {
+    fn compare(&mut self, test: &Comparison, then: Expr, otherwise: Expr, locals: &Locals) -> Resolved<Expr> {
         let (left, right) = (self.value(&test.left, locals), self.value(&test.right, locals));
         let (left, right) = (left?, right?);
         self.agree(

@@ -1,4 +1,4 @@
-//! What an effect file says: where the effect may apply, and how it changes a model there.
+//! The syntax tree of an effect file: where the effect may apply, and how it changes a model there.
 
 use super::{Dotted, Expression, LawStatement, Name, Statement, UnitText};
 
@@ -15,29 +15,30 @@ pub struct Effect {
     pub source: String,
     /// How it shows in measurements: `shows "…";`
     pub shows: String,
-    /// `nuisance;`: every real car has some of it, so that it is no answer to what is missing.
+    /// `nuisance;`: every real car has some of it, so a search never names it as a missing effect.
     pub nuisance: bool,
     /// In the order of the text.
     pub body: Vec<Change>,
-    /// The ways in which it may act, the usual one first; none where there is only one.
+    /// The ways in which it may act, the usual one first; empty if there is only one.
     pub forms: Vec<Form>,
 }
 
 impl Effect {
-    /// What it changes in its usual form.
+    /// The changes of its usual form.
     pub fn changes(&self) -> impl Iterator<Item = &Change> {
         self.body
             .iter()
             .chain(self.forms.first().into_iter().flat_map(|form| &form.body))
     }
 
-    /// The parameters that it declares in every form, those of single directions among them.
+    /// The parameters of all its forms, including those of single directions.
     pub fn parameters(&self) -> Vec<&EffectParameter> {
         parameters(&self.body)
     }
 }
 
-/// `form NAME { "sentence" … }`: a way in which an effect may act, beside what all its forms change.
+/// `form NAME { "sentence" … }`: a way in which an effect may act. Its changes are made in addition to those of all
+/// forms.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Form {
     /// The name.
@@ -51,7 +52,7 @@ pub struct Form {
 }
 
 impl Form {
-    /// The parameters that it declares beside those of all forms.
+    /// The parameters that it declares in addition to those of all forms.
     pub fn parameters(&self) -> Vec<&EffectParameter> {
         parameters(&self.body)
     }
@@ -69,38 +70,39 @@ fn parameters(changes: &[Change]) -> Vec<&EffectParameter> {
 /// `at link l in z named damper with damper given pivot seen from wheel`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pattern {
-    /// What a place is.
+    /// The kind of a place.
     pub kind: PlaceKind,
-    /// What the effect calls the place.
+    /// The name of the place inside the effect.
     pub variable: Name,
-    /// `in z`: the only direction that has places.
+    /// `in z`: the only direction in which the effect applies.
     pub direction: Option<Name>,
-    /// `named damper` or `named sf as subframe`: the names that a place may have, with what the catalogue calls it.
-    /// Any name where there is none.
+    /// `named damper` or `named sf as subframe`: the names that a place may have, with their labels. Empty if any name
+    /// is allowed.
     pub names: Vec<(Name, Option<Name>)>,
-    /// `role suspension` or `role body | pivot as subframe`: what the place does, with what the catalogue calls it.
-    /// Anything where there is none.
+    /// `role suspension` or `role body | pivot as subframe`: the roles that a place may have, with their labels. Empty
+    /// if any role is allowed.
     pub roles: Vec<(Name, Option<Name>)>,
     /// `on body`: the point that is the upper end of the link.
     pub on: Option<Name>,
-    /// `with spring, damper`: linear terms that the link must have, `damping` of any law, or a `law` beside linear terms.
+    /// `with spring, damper`: terms that the link must have: linear ones, `damping` of any kind, or a `law` besides
+    /// linear terms.
     pub terms: Vec<Name>,
     /// `given m_corner, pivot`: what the model must declare.
     pub given: Vec<Name>,
-    /// `seen from wheel`: laws and coefficients are per travel of this point, whatever lever is between.
+    /// `seen from wheel`: laws and coefficients are per travel of this point, whatever the motion ratio.
     pub seen_from: Option<Name>,
 }
 
-/// What a place is.
+/// The kind of a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PlaceKind {
     /// A link.
     Link,
     /// A mass or rotational inertia.
     Mass,
-    /// Where something can be measured: anything that moves but a massless node.
+    /// A point that can carry a sensor: any coordinate except a massless node.
     Sensor,
-    /// A force input that acts on something.
+    /// A force input that acts on a point.
     Force,
 }
 
@@ -130,58 +132,58 @@ pub enum Change {
     Take(Expression, Dotted),
     /// `add to l { … }`
     Add(Name, Vec<LawStatement>),
-    /// `replace damper of l { … }`: other terms for the linear ones of a kind.
+    /// `replace damper of l { … }`: other terms in place of the linear ones of a kind.
     ReplaceTerm(Name, Name, Vec<LawStatement>),
-    /// `replace l.upper of l by tm;`: the first time that the point stands in the link's stretch, or, without `of`,
-    /// wherever it stands in the stretches of the direction.
+    /// `replace l.upper of l by tm;`: replaces the first occurrence of the point in the link's stretch. Without `of`,
+    /// replaces all occurrences in the stretches of the direction.
     ReplacePoint {
         /// A name, or an end of a link.
         point: Dotted,
         /// The link.
         of: Option<Name>,
-        /// What stands there instead.
+        /// Its replacement.
         by: Expression,
     },
-    /// `replace s of l by 1.2 * s rolling 1.3 * s;`: what the law of a link takes for its stretch.
+    /// `replace s of l by 1.2 * s rolling 1.3 * s;`: replaces the stretch in the law of a link.
     ReplaceStretch {
         /// The link.
         of: Name,
-        /// What stands for `s`.
+        /// The replacement of `s`.
         by: Expression,
-        /// The same while a tyre rolls; nothing changes there where there is none.
+        /// The replacement while a tyre rolls; `None` if the rolling law does not change.
         rolling: Option<Expression>,
     },
-    /// `sensor front of l.lower at l.lower + arm * pitch;`: where the sensor at an end of a mass stands, as the point `sf_front`;
-    /// without an end, where its other sensors stand, as `sf_sensor`.
+    /// `sensor front of l.lower at l.lower + arm * pitch;`: the point at which the sensor at an end of a mass is
+    /// mounted, named `sf_front`. Without an end, the point of all its other sensors, named `sf_sensor`.
     PlaceSensor {
         /// `front` or `rear`.
         end: Option<Name>,
         /// The mass.
         of: Dotted,
-        /// What moves the sensor.
+        /// The motion of the sensor.
         at: Expression,
     },
     /// `remove l;`
     Remove(Name),
-    /// `direction x without sf { … }`: changes that are made where the place moves along this direction as well.
+    /// `direction x without sf { … }`: changes that are made if the place moves along this direction too.
     Direction {
         /// The direction.
         name: Name,
-        /// Nothing is changed where the direction has one of these.
+        /// No change is made if the direction has one of these names.
         without: Vec<Name>,
         /// The changes.
         body: Vec<Change>,
     },
-    /// `delay m by delay;`: the signal of a location comes late.
+    /// `delay m by delay;`: the signal of a location is delayed.
     Delay(Name, Name),
-    /// `scale m by gain;`: the signal of a location is too large or too small.
+    /// `scale m by gain;`: the signal of a location has a gain error.
     Scale(Name, Name),
 }
 
 /// A parameter of an effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EffectParameter {
-    /// `shared param`: the model's own parameter of this name, where it has one.
+    /// `shared param`: uses the model's own parameter of this name, if it has one.
     pub shared: bool,
     /// `known param`
     pub known: bool,
@@ -191,34 +193,34 @@ pub struct EffectParameter {
     pub name: Name,
     /// The declared unit.
     pub unit: UnitText,
-    /// Where a search begins, of the model's parameters and coefficients.
+    /// Start of a search, an expression in the model's parameters and coefficients.
     pub start: Expression,
-    /// What is plausible.
+    /// Plausible range, lower and upper bound.
     pub range: (Expression, Expression),
     /// The sentence.
     pub doc: String,
 }
 
-/// What a parameter is to its effect.
+/// The role of a parameter in its effect.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Role {
-    /// `strength param`: as it goes to a value, the model becomes what it was before the patch.
+    /// `strength param`: at its vanishing value the effect changes nothing.
     Strength(VanishesAt),
-    /// `shape param`: it says where the effect acts, over travel, speed or frequency.
+    /// `shape param`: determines at which travel, speed or frequency the effect acts.
     Shape,
-    /// `clock param`: the time since a run began, in s or, without a unit, in parts of the run.
+    /// `clock param`: the time since the start of a run, in s or, without a unit, as a fraction of the run.
     Clock,
     /// None of these.
     Other,
 }
 
-/// Where a strength leaves nothing of its effect.
+/// The value of a strength at which its effect vanishes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum VanishesAt {
-    /// At 0, unless something else is said.
+    /// At 0, the default.
     Zero,
     /// `vanishes at infinity`
     Infinity,
-    /// `vanishes at 1`: of the model's parameters and coefficients.
+    /// `vanishes at 1`: an expression in the model's parameters and coefficients.
     Value(Expression),
 }

@@ -1,27 +1,27 @@
 //! A program with its values in registers, interpreted at one point or at many.
 //!
-//! Operations of one kind are interpreted in a row, and many points in blocks, so that what to do is asked once for all
-//! of them. Nothing is allocated in a call but a thread's scratch space, once.
+//! Operations of one kind are interpreted one after another, and points in blocks, so that each decision about what to
+//! do serves many of them. A call allocates nothing, except the scratch space of a thread at its first call.
 
 use std::cell::{Cell, RefCell};
 
 use qcar_model::{LANES, Lanes};
 
-use super::given::{self, Given, Part, Read};
+use super::arguments::{self, Arguments, Part, ReadEntries};
 use super::order;
 use crate::derive::vectors::Vectors;
 use crate::expr::Curve;
 use crate::program::{Op, Program};
 
-/// Points that are computed together: enough to hide the interpretation of an operation, and few enough that the values
-/// of a whole program stay close to the processor.
+/// Number of points that are computed together: enough to make the cost of interpreting an operation small, and few
+/// enough that the values of a whole program stay in the cache.
 const BLOCK: usize = 16;
 
 thread_local! {
     static SCRATCH: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
 }
 
-/// Operations of one kind, each by the registers that it reads; they write a row of registers.
+/// Operations of one kind, each given by the registers that it reads. They write to consecutive registers.
 #[derive(Clone, Debug)]
 struct Run {
     kind: Op,
@@ -33,7 +33,7 @@ impl Run {
         let operations = run.places.iter().map(|&place| program.ops[place]);
         let arguments = operations.map(|op| {
             let mut registers = program.arguments(op).map(|value| registers[value.0 as usize]);
-            // No loop reads more of them than its operation has.
+            // Operations with fewer than three arguments never read the other entries.
             std::array::from_fn(|_| registers.next().unwrap_or_default())
         });
         Run {
@@ -43,26 +43,26 @@ impl Run {
     }
 }
 
-/// A program whose values have registers: first what it reads, then its numbers, then the results in the order in which
+/// A program whose values have registers: first its leaves, then its numbers, then the results in the order in which
 /// they are computed.
 #[derive(Clone, Debug)]
 pub struct Code {
-    reads: Vec<Read>,
+    reads: Vec<ReadEntries>,
     numbers: Vec<f64>,
     /// The register of the first number.
     first_number: usize,
     runs: Vec<Run>,
     /// The curves of tables, by the registers of their entries.
     curves: Vec<Curve<u32>>,
-    /// How many registers there are.
+    /// Number of registers.
     registers: usize,
     outputs: Vec<u32>,
 }
 
 impl Code {
-    /// Gives every value of a program its register.
+    /// Assigns a register to every value of a program.
     pub fn new(vectors: &Vectors, program: &Program) -> Self {
-        let reads = given::reads(vectors, program);
+        let reads = arguments::reads(vectors, program);
         let first_number = reads.last().map_or(0, |read| read.registers().end);
         let mut numbers = Vec::new();
         let leaves = program.ops.iter().map(|op| match *op {
@@ -70,7 +70,7 @@ impl Code {
                 numbers.push(number);
                 first_number + numbers.len() - 1
             }
-            _ => given::register(vectors, &reads, op).unwrap_or_default(),
+            _ => arguments::register(vectors, &reads, op).unwrap_or_default(),
         });
         let mut registers: Vec<u32> = leaves.map(|register| register as u32).collect();
         let runs = order::runs(program);
@@ -94,8 +94,8 @@ impl Code {
         }
     }
 
-    /// Runs once, outputs in a row.
-    pub fn run(&self, given: &Given, into: &mut [f64]) {
+    /// Runs the program once; `into` receives the outputs.
+    pub fn run(&self, given: &Arguments, into: &mut [f64]) {
         self.with_registers::<1>(|registers| {
             self.load(given, &[], registers);
             self.operate(registers);
@@ -105,11 +105,13 @@ impl Code {
         });
     }
 
-    /// Runs at many points, from one to the next of which some parts vary: these have a row of points for each of their
-    /// entries. The outputs fill the slices one after the other, a row of points each.
+    /// Runs the program at many points. The `varying` parts have a row of points for each of their entries; the other
+    /// parts are the same at all points. The outputs fill the slices of `into` one after another, with a row of points
+    /// each.
     ///
-    /// Where a block is not full, what earlier work left in its other lanes is computed along, and read by nobody.
-    pub fn sweep(&self, given: &Given, varying: &[Part], points: usize, into: &mut [&mut [f64]]) {
+    /// In a block that is not full, the unused lanes contain old values. They are computed too, but their results are
+    /// not read.
+    pub fn sweep(&self, given: &Arguments, varying: &[Part], points: usize, into: &mut [&mut [f64]]) {
         self.with_registers::<BLOCK>(|registers| {
             self.load(given, varying, registers);
             for first in (0..points).step_by(BLOCK) {
@@ -129,7 +131,7 @@ impl Code {
         });
     }
 
-    /// Runs with several sets of what it reads at once, each row one value of all of them.
+    /// Runs the program for several parameter sets at once; each row has one value for each set.
     pub fn sets(&self, given: &[(Part, &[Lanes])], into: &mut [Lanes]) {
         self.with_registers::<LANES>(|registers| {
             for read in &self.reads {
@@ -158,8 +160,8 @@ impl Code {
         });
     }
 
-    /// The numbers, and the parts that do not vary.
-    fn load<const N: usize>(&self, given: &Given, varying: &[Part], registers: &mut [[f64; N]]) {
+    /// Loads the numbers, and the parts that do not vary.
+    fn load<const N: usize>(&self, given: &Arguments, varying: &[Part], registers: &mut [[f64; N]]) {
         for read in self.reads.iter().filter(|read| !varying.contains(&read.part)) {
             let values = given.part(read.part);
             for (register, &entry) in registers[read.registers()].iter_mut().zip(&read.entries) {
@@ -176,11 +178,11 @@ impl Code {
     }
 
     fn operate<const N: usize>(&self, registers: &mut [[f64; N]]) {
-        // Cells, since an operation may read what the one before it in its run wrote.
+        // Cells, since an operation may read the result of an earlier one in the same run.
         let registers = Cell::from_mut(registers).as_slice_of_cells();
         let mut results = &registers[self.first_number + self.numbers.len()..];
         for run in &self.runs {
-            let work = Work {
+            let work = BlockRun {
                 arguments: &run.arguments,
                 registers,
                 curves: &self.curves,
@@ -192,16 +194,16 @@ impl Code {
     }
 }
 
-/// A run at work on a block of lanes.
-struct Work<'a, const N: usize> {
+/// A run of operations, with the registers of a block of lanes.
+struct BlockRun<'a, const N: usize> {
     arguments: &'a [[u32; 3]],
     registers: &'a [Cell<[f64; N]>],
     curves: &'a [Curve<u32>],
-    /// The registers from the first result.
+    /// The registers from the first result on.
     results: &'a [Cell<[f64; N]>],
 }
 
-impl<const N: usize> Work<'_, N> {
+impl<const N: usize> BlockRun<'_, N> {
     fn operate(self, kind: Op) {
         match kind {
             Op::Constant(_) | Op::Input(_) | Op::Prepared(_) => {}

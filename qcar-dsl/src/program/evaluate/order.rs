@@ -1,26 +1,27 @@
-//! The order in which operations are interpreted: those of one kind in a row, so that a run of them is one loop.
+//! The order in which operations are interpreted: operations of one kind form a run, which one loop computes.
 //!
-//! A processor guesses badly what the next operation will be, and a wrong guess costs more than the operation itself.
+//! If kinds alternate, the processor mispredicts the branch to the next operation, which costs more than the operation
+//! itself.
 
 use crate::program::{Op, Program, Value};
 
-/// Operations that are put in order together: enough for long runs, and few enough that what one computes is still
-/// close to the processor when another uses it.
+/// Number of operations that are reordered together: enough for long runs, and few enough that a result is still in the
+/// cache when another operation uses it.
 const WINDOW: usize = 256;
 
-/// Operations of one kind, to be computed one after the other.
+/// Operations of one kind, to be computed one after another.
 #[derive(Debug, PartialEq)]
 pub struct Run {
     /// The operation without its arguments.
     pub kind: Op,
-    /// Its places in the program.
+    /// Positions of the operations in the program.
     pub places: Vec<usize>,
 }
 
-/// All operations of a program but its leaves, in an order in which they can be computed.
+/// All operations of a program except its leaves, with arguments before the operations that use them.
 ///
-/// Next comes the kind of the operation from which it is still furthest to the end, counted in changes of kind, and
-/// with it all of that kind that can be computed by then.
+/// The next run has the kind of the operation with the longest way to the end, counted in changes of kind. It contains
+/// all operations of that kind whose arguments are computed.
 pub fn runs(program: &Program) -> Vec<Run> {
     let distances = distances(program);
     let mut done: Vec<bool> = program.ops.iter().map(|op| op.is_leaf()).collect();
@@ -28,7 +29,7 @@ pub fn runs(program: &Program) -> Vec<Run> {
     let mut runs = Vec::new();
     for window in places.chunks(WINDOW) {
         let mut waiting = window.to_vec();
-        // Of the furthest the first, whose arguments are further or earlier and so are there.
+        // The first of the operations with the longest way: its arguments have a longer way or come earlier, so they are computed.
         while let Some(next) = waiting.iter().copied().rev().max_by_key(|&place| distances[place]) {
             let kind = kind(&program.ops[next]);
             let (places, others) = waiting.into_iter().partition(|&place| {
@@ -43,7 +44,7 @@ pub fn runs(program: &Program) -> Vec<Run> {
     runs
 }
 
-/// How often the kind changes from each operation to the end, along the longest way.
+/// Number of changes of kind from each operation to the end of the program, along the longest way.
 fn distances(program: &Program) -> Vec<usize> {
     let mut distances = vec![0; program.ops.len()];
     for (place, op) in program.ops.iter().enumerate().rev() {
@@ -65,7 +66,7 @@ mod tests {
     use super::*;
     use crate::expr::{Function, Symbol};
 
-    /// Laws side by side, as equations of motion have them: each a product and a function of it, added to those before.
+    /// Parallel laws, as in equations of motion: each is a product and a function of it, added to the sum so far.
     #[test]
     fn kinds_that_alternate_stand_in_a_row() {
         let mut ops = vec![Op::Input(Symbol::Frequency)];
@@ -90,7 +91,7 @@ mod tests {
         assert_eq!(lengths, [20, 20, 20], "{runs:?}");
     }
 
-    /// Functions differ in kind, and so do a quotient and a product of the same two.
+    /// Different functions have different kinds, and so do a quotient and a product of the same arguments.
     #[test]
     fn kinds_differ_in_what_is_done() {
         let (a, b) = (Value(0), Value(1));

@@ -15,33 +15,33 @@ use crate::model::{Entry, Matrix, Model};
 pub struct Balance<'a> {
     model: &'a dyn Model,
     states: &'a [usize],
-    /// For each state of the model its place in `states`.
+    /// For each state of the model, its position in `states`.
     places: Vec<Option<usize>>,
     basis: &'a Basis,
     omega: f64,
-    /// The present point: its coefficients, none before a drive has been looked at,
+    /// Coefficients of the present point; empty before the first drive.
     at: Vec<f64>,
-    /// and its samples.
+    /// Samples of the present point.
     period: Period<'a>,
-    /// The states that were straight at the last point whose Jacobian was wanted.
+    /// The linear states at the last point whose Jacobian was factorised.
     straight: Option<Rc<Straight>>,
 }
 
-/// Newton steps before the search gives up.
+/// Largest number of Newton steps.
 const ITERATIONS: usize = 30;
 /// A step this small relative to the largest coefficient of its state ends the search.
 const SETTLED: f64 = 1e-7;
-/// A constant that nothing returns, as the force of a friction that sticks, would make the matrix singular: this share
-/// of ω returns it slowly. It bends the way of the search by as little, and not its end.
+/// A constant part without a restoring term, such as the force of sticking friction, would make the matrix singular. A
+/// restoring rate of this fraction of ω is added. It changes the path of the search slightly, but not its result.
 const RETURN: f64 = 1e-6;
-/// Where a whole step leaves less than this share of itself to the next one by the same matrix, that matrix serves once
-/// more: to factorise a new one costs as much as tens of residuals.
+/// A matrix is used again if the next step with it is shorter than this fraction of the last full step: a new
+/// factorisation costs as much as tens of residuals.
 const STRAIGHT: f64 = 0.2;
-/// The shortest share of a Newton step that is tried.
+/// Smallest fraction of a Newton step that is tried.
 const SHORTEST: f64 = 1e-3;
 
 impl<'a> Balance<'a> {
-    /// Without a drive yet.
+    /// A balance without a drive.
     pub fn new(model: &'a dyn Model, p: &[f64], states: &'a [usize], basis: &'a Basis) -> Self {
         let place = |state| states.iter().position(|&s| s == state);
         Self {
@@ -56,7 +56,7 @@ impl<'a> Balance<'a> {
         }
     }
 
-    /// Takes a drive: its frequency (rad/s) and a row of inputs for each sample.
+    /// Sets the drive: its angular frequency (rad/s) and a row of inputs for each sample.
     pub fn drive(&mut self, omega: f64, inputs: DMatrix<f64>) {
         self.omega = omega;
         self.period.inputs = inputs;
@@ -64,7 +64,7 @@ impl<'a> Balance<'a> {
         self.straight = None;
     }
 
-    /// Searches from `start`: the coefficients, and whether they settled.
+    /// Searches from `start`. Returns the coefficients, and true if they converged.
     ///
     /// A step is shortened until the next one, with the same matrix, would be shorter (P. Deuflhard, "Newton Methods
     /// for Nonlinear Problems", section 3.3): it needs no scale of the residuals, whose units differ.
@@ -77,7 +77,7 @@ impl<'a> Balance<'a> {
                 return (x.as_slice().to_vec(), false);
             };
             let (mut share, length) = (1.0_f64, self.length(&step, &(&x - &step)));
-            // At a kink of a law no step may be monotonic: the best of those tried is better than none.
+            // At a kink of a law, no step may be monotonic; the best of the tried steps is used.
             let mut best: Option<(f64, f64, _)> = None;
             let mut is_monotonic = false;
             while !is_monotonic && share >= SHORTEST {
@@ -114,14 +114,14 @@ impl<'a> Balance<'a> {
         Some((factors, step))
     }
 
-    /// Takes a point as the present one.
+    /// Makes a point the present one.
     pub fn sample(&mut self, x: &[f64]) {
         if self.at != x {
             self.residual(&DVector::from_column_slice(x));
         }
     }
 
-    /// Coefficients of some outputs at the present point, one after the other.
+    /// Coefficients of some outputs at the present point, output by output.
     pub fn outputs(&self, outputs: &[usize]) -> DMatrix<f64> {
         product(&self.basis.analysis, &self.period.outputs().select_columns(outputs))
     }
@@ -138,7 +138,8 @@ impl<'a> Balance<'a> {
         moves
     }
 
-    /// What each of [`Self::slopes`] does to the states that move, and to the outputs beside them: a column for each.
+    /// Direct effect of each direction of [`Self::slopes`] on the moving states and on the outputs: a column for each
+    /// direction.
     fn pushes(&self, outputs: &[usize], groups: &[Vec<usize>]) -> (DMatrix<f64>, DMatrix<f64>) {
         let terms = self.basis.terms();
         let none = |rows: usize| DMatrix::zeros(rows * terms, groups.len() + 1);
@@ -157,7 +158,7 @@ impl<'a> Balance<'a> {
         (on_states, on_outputs)
     }
 
-    /// The same piece by piece, with the samples of each.
+    /// The same, term by term, with the samples of each term.
     fn sampled_pushes(&self, outputs: &[usize], groups: &[Vec<usize>]) -> (Vec<Push>, DMatrix<f64>) {
         let (mut pushes, mut samples) = (Vec::new(), Vec::new());
         let place = |on_output: bool, row: u16| match on_output {
@@ -193,7 +194,7 @@ impl<'a> Balance<'a> {
         (pushes, samples)
     }
 
-    /// Adds what some outputs show of moves of the states.
+    /// Adds the effect of motions of the states on some outputs.
     fn show(&self, moved: &DMatrix<f64>, outputs: &[usize], shown: &mut DMatrix<f64>) {
         let terms = self.basis.terms();
         for (at, weights) in self.entries(Matrix::C) {
@@ -224,7 +225,7 @@ impl<'a> Balance<'a> {
         coefficients.reshape_generic(Dyn(self.states.len() * self.basis.terms()), U1)
     }
 
-    /// `ω dx/dθ - f` in coefficients, and the samples of the point as the present ones.
+    /// `ω dx/dθ - f` in coefficients. The point becomes the present one.
     fn residual(&mut self, x: &DVector<f64>) -> DVector<f64> {
         let series = self.synthesis(x);
         self.period.move_to(self.states, &series);
@@ -238,7 +239,7 @@ impl<'a> Balance<'a> {
         })
     }
 
-    /// The factors of the Jacobian of [`Self::residual`] at the present point; `None` where it has none.
+    /// The factorised Jacobian of [`Self::residual`] at the present point; `None` if it is singular.
     fn factorise(&mut self) -> Option<Factors> {
         self.period.linearise();
         let mut constant = DMatrix::zeros(self.states.len(), self.states.len());
@@ -258,7 +259,8 @@ impl<'a> Balance<'a> {
         Some(Factors::new(straight, &self.jacobian(&bent)))
     }
 
-    /// The states whose rows of A are `constant`, all but the bent ones: those of the last point where they are the same.
+    /// The linear states, whose rows of A are `constant`; those in `bent` are nonlinear. The factors of the last point
+    /// are reused if they are the same.
     fn straight(&mut self, constant: DMatrix<f64>, bent: &[usize]) -> Option<Rc<Straight>> {
         if !self.straight.as_ref().is_some_and(|last| last.is_of(&constant, bent)) {
             let turn = |harmonic| match harmonic {
@@ -271,7 +273,7 @@ impl<'a> Balance<'a> {
         self.straight.clone()
     }
 
-    /// The rows of some of the states that move in the Jacobian.
+    /// The rows of some moving states in the Jacobian.
     fn jacobian(&self, of: &[usize]) -> DMatrix<f64> {
         let terms = self.basis.terms();
         let states: Vec<usize> = of.iter().map(|&place| self.states[place]).collect();
@@ -294,7 +296,7 @@ impl<'a> Balance<'a> {
             .filter(move |(at, _)| at.matrix == of)
     }
 
-    /// What the states that move do to some rows of A, term by term.
+    /// Effect of the moving states on some rows of A, term by term.
     fn rows(&self, rows: &[usize]) -> DMatrix<f64> {
         let terms = self.basis.terms();
         let mut found = DMatrix::zeros(rows.len() * terms, self.states.len() * terms);
@@ -312,7 +314,7 @@ impl<'a> Balance<'a> {
         found
     }
 
-    /// The largest of the states' steps, each relative to the largest coefficient of its state.
+    /// The largest step of a state, relative to the largest coefficient of that state.
     fn length(&self, step: &DVector<f64>, x: &DVector<f64>) -> f64 {
         let terms = self.basis.terms();
         let lengths = (0..self.states.len()).map(|place| {
@@ -329,19 +331,19 @@ impl<'a> Balance<'a> {
     }
 }
 
-/// A piece of what pushes a state or an output.
+/// A term of the direct effect on a state or an output.
 struct Push {
     on_output: bool,
-    /// Among the states that move, or the outputs asked for.
+    /// Position among the moving states, or among the requested outputs.
     place: usize,
-    /// The slope that it is a part of.
+    /// The direction to which it belongs.
     along: usize,
 }
 
-/// What has the same value at all samples.
+/// The common value of all samples; `None` if they differ.
 fn held(samples: &DVectorView<f64>) -> Option<f64> {
     let first = samples[0];
-    // Without a way out before the end the samples are compared several at once.
+    // Without an early exit, several samples are compared at once.
     let is_held = samples
         .as_slice()
         .iter()

@@ -1,4 +1,4 @@
-//! Fourier series by their samples: `a_0 + Σ_n (a_n cos nθ + b_n sin nθ)`, kept as a_0, a_1, b_1, a_2, b_2, ...
+//! Fourier series and their samples: `a_0 + Σ_n (a_n cos nθ + b_n sin nθ)`, stored as a_0, a_1, b_1, a_2, b_2, ...
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -8,7 +8,7 @@ use nalgebra::{Complex, DMatrix, DVectorView};
 
 use super::product::product;
 
-/// Fourier series up to some harmonic.
+/// Transforms of Fourier series up to some harmonic.
 pub struct Basis {
     terms: usize,
     /// From coefficients to samples.
@@ -20,10 +20,10 @@ pub struct Basis {
 }
 
 impl Basis {
-    /// Samples enough that kinks of a law do not alias into the lower harmonics.
+    /// Samples per harmonic: enough that kinks of a law do not alias into the lower harmonics.
     const OVERSAMPLING: usize = 10;
 
-    /// One for all who ask for so many harmonics: a search asks for thousands, and each is full of sines.
+    /// The basis for a number of harmonics, which is built once and shared: a search needs it thousands of times.
     pub fn shared(harmonics: usize) -> Arc<Self> {
         static MADE: Mutex<BTreeMap<usize, Arc<Basis>>> = Mutex::new(BTreeMap::new());
         let mut made = MADE.lock().unwrap_or_else(PoisonError::into_inner);
@@ -48,12 +48,12 @@ impl Basis {
         }
     }
 
-    /// Coefficients of a series.
+    /// Number of coefficients of a series.
     pub fn terms(&self) -> usize {
         self.terms
     }
 
-    /// Samples of a period.
+    /// Number of samples of a period.
     pub fn samples(&self) -> usize {
         self.synthesis.nrows()
     }
@@ -63,7 +63,8 @@ impl Basis {
         Complex::new(self.synthesis[(sample, 1)], self.synthesis[(sample, 2)])
     }
 
-    /// `d/dθ` of a series has at `term` this factor times the coefficient of this other term; `None` for the constant.
+    /// For `d/dθ` of a series: the coefficient at `term` is the returned factor times the coefficient of the returned
+    /// other term; `None` for the constant.
     pub fn derivative(&self, term: usize) -> Option<(usize, f64)> {
         let harmonic = term.div_ceil(2) as f64;
         match term {
@@ -73,10 +74,11 @@ impl Basis {
         }
     }
 
-    /// From the coefficients of a series to those of its product with weights, which are given by their samples.
+    /// The matrix from the coefficients of a series to those of its product with weights, which are given by their
+    /// samples.
     ///
-    /// The product of two harmonics is one of their sum and one of their difference: the matrix is made of the weights'
-    /// own coefficients.
+    /// The product of two harmonics is a harmonic of their sum and one of their difference, so the entries are
+    /// coefficients of the weights.
     pub fn weighted(&self, weights: &DVectorView<f64>) -> DMatrix<f64> {
         let weights = product(
             &self.finer,
@@ -104,8 +106,8 @@ impl Basis {
         matrix
     }
 
-    /// Amplitudes of the harmonics from 0, `Re Y_n exp(jnθ)`: a column for each series, whose coefficients stand one
-    /// after the other.
+    /// Amplitudes of the harmonics from 0, `Re Y_n exp(jnθ)`: a column for each series. `coefficients` are those of all
+    /// series, series by series.
     pub fn harmonics(&self, coefficients: &[f64]) -> DMatrix<Complex<f64>> {
         let amplitudes = |series: &[f64], harmonic: usize| match harmonic {
             0 => Complex::from(series[0]),

@@ -1,7 +1,7 @@
 //! The Jacobian of a balance, factorised.
 //!
-//! A state whose law is linear ties each harmonic to itself alone. Such states are taken out beforehand, harmonic by
-//! harmonic, and leave a small matrix of the few states whose law bends.
+//! The equation of a linear state couples each harmonic with itself only. Linear states are eliminated first, harmonic
+//! by harmonic, which leaves a small matrix of the few nonlinear states.
 
 use std::rc::Rc;
 
@@ -12,31 +12,33 @@ use super::product::{add, product};
 /// A factorised Jacobian.
 pub struct Factors {
     straight: Rc<Straight>,
-    /// What the straight states do to the bent ones.
+    /// Effect of the linear states on the nonlinear ones.
     pull: DMatrix<f64>,
-    /// Of what is left: the bent states, and what they do to themselves by way of the straight ones.
+    /// Factors of the reduced matrix of the nonlinear states, which includes their effect on themselves through the
+    /// linear states.
     lu: LU<f64, Dyn, Dyn>,
 }
 
-/// The states whose law is linear. They are the same wherever the same states are bent.
+/// The linear states. They stay the same as long as the same states are nonlinear.
 pub struct Straight {
-    /// Their rows of A, and the states that are bent.
+    /// Their rows of A, and the nonlinear states.
     of: (DMatrix<f64>, Vec<usize>),
     /// Their rows of the Jacobian, harmonic by harmonic.
     rows: Vec<usize>,
-    /// The rows of the bent states, in the same order.
+    /// The rows of the nonlinear states, in the same order.
     bent: Vec<usize>,
-    /// How pushes on them move them.
+    /// Motion of the linear states under given right-hand sides.
     moves: Harmonics,
-    /// How they move with the bent states.
+    /// Motion of the linear states with the nonlinear ones.
     follow: Harmonics,
 }
 
-/// A matrix that ties each harmonic to itself alone: its blocks from harmonic 0, for rows that go harmonic by harmonic.
+/// A matrix that couples each harmonic with itself only: its blocks from harmonic 0, for rows in the order of
+/// harmonics.
 struct Harmonics(Vec<DMatrix<f64>>);
 
 impl Factors {
-    /// Of a Jacobian in which the bent states, one after the other, have these `rows`.
+    /// Factorises a Jacobian; `rows` are those of the nonlinear states, state by state.
     pub fn new(straight: Rc<Straight>, rows: &DMatrix<f64>) -> Self {
         let bent: Vec<usize> = (0..straight.of.1.len()).collect();
         let rows = rows.select_rows(&rows_of(&bent, straight.follow.0.len()));
@@ -49,13 +51,13 @@ impl Factors {
         }
     }
 
-    /// The solution for a right-hand side; `None` where the Jacobian is singular.
+    /// The solution for a right-hand side; `None` if the Jacobian is singular.
     pub fn solve(&self, push: &DVector<f64>) -> Option<DVector<f64>> {
         let solved = self.solve_all(&DMatrix::from_column_slice(push.len(), 1, push.as_slice()))?;
         Some(solved.column(0).into_owned())
     }
 
-    /// The same for many, a column each.
+    /// The same for several right-hand sides, one in each column.
     pub fn solve_all(&self, pushes: &DMatrix<f64>) -> Option<DMatrix<f64>> {
         let mut straight = self.straight.moves.of(&pushes.select_rows(&self.straight.rows));
         let mut bent = pushes.select_rows(&self.straight.bent);
@@ -76,8 +78,8 @@ impl Factors {
 }
 
 impl Straight {
-    /// Of states whose rows of the Jacobian are `jnω - A`, of which `a` has the rows; `turns` are `jnω` for each harmonic
-    /// from 0, and `bent` are all other states. `None` where a harmonic is singular.
+    /// The linear states, whose rows of the Jacobian are `jnω - A`. `a` has their rows of A, `turns` are `jnω` for each
+    /// harmonic from 0, and `bent` are the other, nonlinear states. `None` if the matrix of a harmonic is singular.
     pub fn new(a: DMatrix<f64>, turns: &[Complex<f64>], bent: Vec<usize>) -> Option<Self> {
         let own: Vec<usize> = (0..a.ncols()).filter(|state| !bent.contains(state)).collect();
         let (among, pushes) = (a.select_columns(&own), a.select_columns(&bent));
@@ -97,14 +99,14 @@ impl Straight {
         })
     }
 
-    /// True where these are the states of such rows.
+    /// True if these rows and nonlinear states are its own.
     pub fn is_of(&self, a: &DMatrix<f64>, bent: &[usize]) -> bool {
         (&self.of.0, &self.of.1[..]) == (a, bent)
     }
 }
 
 impl Harmonics {
-    /// Of a matrix for the amplitudes of each harmonic from 0.
+    /// From the matrix of the complex amplitudes of each harmonic from 0.
     fn new(amplitudes: &[DMatrix<Complex<f64>>]) -> Self {
         // The amplitude of a cos + b sin is a - jb.
         let block = |matrix: &DMatrix<Complex<f64>>| {
@@ -171,7 +173,7 @@ mod tests {
 
     #[test]
     fn the_solution_is_that_of_the_whole_jacobian() {
-        // Three states of five terms each, some of them straight.
+        // Three states of five terms each, some of them linear.
         for own in [vec![0, 2], vec![1], vec![0], vec![0, 1]] {
             let (omega, constant) = (3.0, 1e-3);
             let bent_states: Vec<usize> = (0..3).filter(|state| !own.contains(state)).collect();

@@ -1,4 +1,4 @@
-//! A model at the samples of a period: everything has a row for each sample, and a column for each of its entries.
+//! A model at the samples of a period: every matrix has a row for each sample, and a column for each entry.
 
 use nalgebra::DMatrix;
 
@@ -21,7 +21,7 @@ pub struct Period<'a> {
 }
 
 impl<'a> Period<'a> {
-    /// At rest and without a drive; rates, matrices and derivatives by parameters are zero until they are asked for.
+    /// A model at rest without a drive; rates, matrices and derivatives by parameters are zero until they are computed.
     pub fn new(model: &'a dyn Model, p: &[f64], samples: usize) -> Self {
         let about = model.about();
         let mut constants = vec![0.0; about.constants];
@@ -39,7 +39,7 @@ impl<'a> Period<'a> {
         }
     }
 
-    /// Moves the listed states, whose samples are the columns of `series`, and finds the rates there.
+    /// Sets the samples of the listed states to the columns of `series`, and computes the rates.
     pub fn move_to(&mut self, listed: &[usize], series: &DMatrix<f64>) {
         for (&state, samples) in listed.iter().zip(series.column_iter()) {
             self.states.set_column(state, &samples);
@@ -49,20 +49,20 @@ impl<'a> Period<'a> {
             .derivative_at(&self.constants, &points, self.rates.as_mut_slice());
     }
 
-    /// Finds the matrices where the states are.
+    /// Computes the matrices at the present states.
     pub fn linearise(&mut self) {
         let points = points(&self.states, &self.inputs);
         self.model.matrices_at(&self.p, &points, self.matrices.as_mut_slice());
     }
 
-    /// Finds the derivatives by parameters where the states are.
+    /// Computes the derivatives by parameters at the present states.
     pub fn differentiate(&mut self) {
         let points = points(&self.states, &self.inputs);
         self.model
             .parameter_jacobian_at(&self.p, &points, self.by_parameter.as_mut_slice());
     }
 
-    /// All outputs where the states are.
+    /// All outputs at the present states.
     pub fn outputs(&self) -> DMatrix<f64> {
         let mut outputs = DMatrix::zeros(self.inputs.nrows(), self.model.about().outputs.len());
         let points = points(&self.states, &self.inputs);

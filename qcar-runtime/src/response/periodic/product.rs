@@ -4,7 +4,8 @@ use nalgebra::DMatrix;
 
 use crate::vectors::{Loops, widest};
 
-/// So few columns are multiplied one by one: the general method, which copies both matrices first, takes longer.
+/// Largest number of columns that are multiplied one by one; the general method copies both matrices first, which takes
+/// longer.
 const FEW: usize = 4;
 
 /// The product of two matrices.

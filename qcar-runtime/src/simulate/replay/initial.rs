@@ -1,4 +1,4 @@
-//! How the readings of a linear model depend on the states with which a record begins.
+//! Dependence of the readings of a linear model on its initial states.
 //!
 //! A reading is a row times the states, `c x`. After `k` steps of the transition matrix `Φ` it depends on the initial states by
 //! `c Φᵏ`. This row is advanced instead of one state vector for each initial state, so the work grows with the number of
@@ -8,19 +8,19 @@ use super::Reading;
 use crate::matrices::at_rest;
 use crate::model::{About, Entry, Matrix, Model};
 
-/// A linear model that nothing drives, in the steps of a replay.
+/// A linear model without excitation, in the steps of a replay.
 pub struct FreeResponse<'a> {
     about: &'a About,
-    /// The nonzeros of A,
+    /// The nonzeros of A.
     a: Vec<(&'a Entry, f64)>,
-    /// and those of C.
+    /// The nonzeros of C.
     c: Vec<(&'a Entry, f64)>,
-    /// Of a whole step, s.
+    /// Length of a whole step, s.
     length: f64,
 }
 
 impl<'a> FreeResponse<'a> {
-    /// For steps of a length in s.
+    /// Prepares for steps of `length` (s).
     pub fn new(model: &'a dyn Model, p: &[f64], length: f64) -> Self {
         let about = model.about();
         let nonzeros: Vec<_> = about.matrices.iter().zip(at_rest(model, p)).collect();
@@ -38,8 +38,8 @@ impl<'a> FreeResponse<'a> {
         }
     }
 
-    /// For each of some states the samples of a reading that follow from it where it begins at one and all others at zero.
-    /// `halvings` are those of the steps of each sample.
+    /// For each of `states`, the samples of a reading if this state begins at one and all others at zero. `halvings`
+    /// are those of the steps of each sample.
     pub fn of<'s>(
         &self,
         reading: Reading,
@@ -57,7 +57,7 @@ impl<'a> FreeResponse<'a> {
         responses
     }
 
-    /// What a reading takes of each state.
+    /// Coefficient of each state in a reading.
     fn row(&self, reading: Reading) -> Vec<f64> {
         let mut row = vec![0.0; self.about.states.len()];
         match reading {

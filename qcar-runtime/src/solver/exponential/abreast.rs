@@ -1,4 +1,4 @@
-//! The method for several systems abreast, a lane each: all loops run over the lanes.
+//! The method for several systems side by side, with one lane for each: all loops run over the lanes.
 //!
 //! Each lane gives the same bits as [`ExponentialAdams`], whatever the other lanes do.
 
@@ -11,36 +11,36 @@ use crate::solver::polynomial::{EXTRAPOLATION, PAST};
 /// Integrator of systems whose matrices have the same sparsity.
 pub struct ExponentialAbreast<const F: usize> {
     parts: Vec<Part>,
-    /// For each force how each state is corrected, and how much of that is the error that is judged.
+    /// For each force the correction of each state, and its part that is the estimated error.
     whole: [Vec<Lanes>; F],
     last_order: [Vec<Lanes>; F],
     state: Vec<Lanes>,
-    /// The states a step before, and whether that step stands.
+    /// The states one step before, and true if that step was accepted.
     before: Vec<Lanes>,
     stands: [bool; LANES],
     ahead: Vec<Lanes>,
-    /// For each state: how much of its error is tolerated whatever its size, by how much the error is more than allowed, and of
-    /// each force how much of it was not foreseen. Loops over all lanes of all states need no others.
+    /// For each state its absolute tolerance and the excess of its error; for each force the error of its prediction.
+    /// They are stored so that loops run over all lanes of all states.
     absolute: Vec<Lanes>,
     excess: Vec<Lanes>,
     off: [Vec<Lanes>; F],
-    /// Each force at the points of the past, the last first.
+    /// Past values of each force, the last first.
     past: [[Lanes; KEPT]; F],
-    /// Number of points at which they are known.
+    /// Number of known past values.
     known: [usize; LANES],
 }
 
-/// States that do not depend on any others, and the forces that drive them.
+/// States that depend on no others, with the forces that drive them.
 struct Part {
     states: Vec<usize>,
     forces: Vec<usize>,
-    /// For each state what its next value is of each entry of `from`.
+    /// The matrix from `from` to the next states.
     propagator: Vec<Lanes>,
     from: Vec<Lanes>,
 }
 
 impl<const F: usize> ExponentialAbreast<F> {
-    /// With room for systems like this one, of whose states so much error is tolerated; all lanes are free.
+    /// An integrator for systems with the sparsity of `one` and the tolerances `absolute`; all lanes are free.
     pub fn like(one: &ExponentialAdams<F>, absolute: &[f64]) -> Self {
         const NOTHING: Lanes = [0.0; LANES];
         let states = || vec![NOTHING; one.state.len()];
@@ -112,7 +112,7 @@ impl<const F: usize> ExponentialAbreast<F> {
         one.known = self.known[lane];
         for (part, own) in self.parts.iter_mut().zip(&mut one.parts) {
             get(&mut own.from, &part.from);
-            // What nobody drives any more would decay to numbers that are slow to compute with.
+            // An undriven lane would decay to subnormal numbers, which are slow.
             part.from.iter_mut().for_each(|entry| entry[lane] = 0.0);
         }
     }
@@ -122,7 +122,7 @@ impl<const F: usize> ExponentialAbreast<F> {
         self.known[lane] == KEPT
     }
 
-    /// Foresees the next states.
+    /// Predicts the next states.
     #[inline(always)]
     pub fn foresee(&mut self) {
         for part in &self.parts {
@@ -146,7 +146,7 @@ impl<const F: usize> ExponentialAbreast<F> {
         }
     }
 
-    /// The next states, as they are foreseen.
+    /// The predicted next states.
     pub fn ahead(&self) -> &[Lanes] {
         &self.ahead
     }
@@ -156,8 +156,9 @@ impl<const F: usize> ExponentialAbreast<F> {
         &self.state
     }
 
-    /// Steps to where the states were foreseen, with the forces as they are there, and says which lanes did: where the error
-    /// is more than `relative` of a state and what is tolerated besides, the lane is to be given back, as it was.
+    /// Completes the step with the forces at the predicted states, and returns which lanes did. If the error exceeds
+    /// `relative` times a state plus the absolute tolerance, the step of the lane is rejected, and the lane must be
+    /// given back.
     #[inline(always)]
     pub fn advance(&mut self, force: &[Lanes; F], relative: f64) -> [bool; LANES] {
         for ((rows, force), past) in self.off.iter_mut().zip(force).zip(&self.past) {

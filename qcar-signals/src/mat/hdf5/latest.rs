@@ -1,4 +1,5 @@
-//! HDF5 of the newer versions, superblocks 2 and 3, read by the crate hdf5-pure: what h5py writes with `libver="latest"`.
+//! Newer versions of HDF5 with superblocks 2 and 3, as h5py writes with `libver="latest"`. The crate hdf5-pure reads
+//! them.
 
 use std::cell::Cell;
 use std::panic::catch_unwind;
@@ -12,7 +13,7 @@ use crate::find::Wanted;
 use super::super::value::{Array, Fields, Value, Variable, is_read, of_fields};
 use super::DEEPEST;
 
-/// Bytes that a packed one can become at most.
+/// Largest ratio of unpacked to packed size.
 const LARGEST_RATIO: u64 = 1100;
 
 /// All variables of a file, which begins with its superblock.
@@ -22,7 +23,7 @@ pub(super) fn variables(file: &Bytes, wanted: &Wanted) -> Read<Vec<Variable>> {
         let remedy = "save the file with MATLAB (-v7 or -v7.3), or with the earliest version of HDF5 allowed";
         Fault::new(file.place(0), what, "HDF5 that can be read", remedy)
     };
-    // The crate has no unsafe code that a mistake in a file could reach; what it may do is give up.
+    // A damaged file reaches no unsafe code of the crate, but the crate may panic.
     let caught = catch_unwind(|| {
         let left = Cell::new(LARGEST_RATIO.saturating_mul(bytes.len() as u64));
         let root = File::from_bytes(bytes)?.root();
@@ -35,12 +36,12 @@ pub(super) fn variables(file: &Bytes, wanted: &Wanted) -> Read<Vec<Variable>> {
     }
 }
 
-/// What an object counts for at least, bytes.
+/// Smallest number of bytes that an object is counted as.
 const OBJECT: u64 = 1024;
 
-/// A walk through all objects.
+/// A traversal of all objects.
 struct Walk<'a> {
-    /// Bytes that may still be read: a link may lead to what was read before, again and again.
+    /// Bytes that may still be read, since links may lead to the same objects again and again.
     left: Cell<u64>,
     wanted: &'a Wanted<'a>,
 }
@@ -65,7 +66,7 @@ impl Walk<'_> {
         Ok(variables.into_iter().map(variable).collect())
     }
 
-    /// Whether that many bytes may still be read; if so, they count as read.
+    /// Returns true if this many bytes may still be read, and then counts them as read.
     fn may_take(&self, bytes: Option<u64>) -> bool {
         let left = bytes.and_then(|bytes| self.left.get().checked_sub(bytes.max(OBJECT)));
         self.left.set(left.unwrap_or(self.left.get()));
@@ -89,7 +90,7 @@ impl Walk<'_> {
         Ok(of_fields(fields))
     }
 
-    /// The value of a dataset, which has the name of a variable where it is one.
+    /// The value of a dataset; `variable` is its name if it is a variable.
     fn dataset(&self, dataset: &Dataset, variable: Option<&str>, depth: usize) -> Result<Value, Error> {
         match dataset.chunk_index() {
             Ok(Some(ChunkIndex::BTreeV2)) => {

@@ -20,7 +20,7 @@ pub(super) struct Header<'a> {
     /// Ids of the filters, in the order of writing.
     pub(super) filters: Vec<u16>,
     pub(super) matlab_class: String,
-    /// Set where MATLAB stores the dimensions of an empty array in place of its elements.
+    /// True if MATLAB stores the dimensions of an empty array in place of its elements.
     pub(super) is_empty: bool,
 }
 
@@ -29,7 +29,7 @@ pub(super) struct Header<'a> {
 pub(super) struct Datatype {
     pub(super) class: Class,
     pub(super) order: Order,
-    /// Bytes.
+    /// Size, bytes.
     pub(super) size: u32,
 }
 
@@ -41,13 +41,13 @@ pub(super) enum Class {
     Other,
 }
 
-/// Where the elements are.
+/// Position of the elements.
 pub(super) enum Layout<'a> {
     /// In the header.
     Compact(Bytes<'a>),
-    /// At an address, at most so many bytes.
+    /// At an address, with their largest size in bytes.
     Contiguous(u64, u64),
-    /// In a tree, in chunks of these dimensions; the last is the size of an element.
+    /// In chunks of these dimensions, which a tree lists; the last dimension is the size of an element.
     Chunked(u64, Vec<u32>),
 }
 
@@ -211,8 +211,8 @@ impl<'a> Layout<'a> {
     }
 }
 
-/// Version 1, filters 1, in version 1 fill 6; each filter: id 2, length of its name 2 (missing in version 2 for those that have
-/// a number of HDF5), flags 2, values 2, name, values of 4 each and in version 1 a fill to eight bytes.
+/// Version 1, filters 1, in version 1 fill 6; each filter: id 2, length of its name 2 (missing in version 2 for filters
+/// with a number of HDF5), flags 2, values 2, name, values of 4 each and in version 1 a fill to eight bytes.
 fn filters(message: &Bytes) -> Read<Vec<u16>> {
     let (version, count) = (message.u8(0, "filters")?, message.u8(1, "filters")?);
     let mut at = if version == 1 { 8 } else { 2 };

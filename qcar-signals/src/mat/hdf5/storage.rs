@@ -1,4 +1,4 @@
-//! The bytes of a dataset, from wherever they lie.
+//! The bytes of a dataset, in one run or in chunks.
 
 use std::borrow::Cow;
 use std::io::Read as _;
@@ -11,7 +11,7 @@ use crate::error::{Fault, Read};
 use super::messages::{Header, Layout};
 use super::{Leaf, Reader, too_new};
 
-/// Bytes that a packed one can become at most.
+/// Largest ratio of unpacked to packed size.
 const LARGEST_RATIO: u64 = 1100;
 const DEFLATE: u16 = 1;
 const SHUFFLE: u16 = 2;
@@ -35,7 +35,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Where the elements lie in one run; `None` where they lie in chunks.
+    /// The elements as one run of bytes; `None` if they are in chunks.
     fn run(&mut self, header: &Header<'a>) -> Read<Option<Bytes<'a>>> {
         let promised = promised(header);
         let there = match &header.layout {
@@ -93,7 +93,7 @@ impl<'a> Reader<'a> {
         Ok(joined)
     }
 
-    /// Bytes of a chunk, which must be of the kind of the dataset.
+    /// Size of a chunk, bytes; its dimensions must fit the dataset.
     fn size_of_chunk(&self, tree: u64, chunk: &[u32], header: &Header) -> Read<u64> {
         let fits = chunk.split_last().is_some_and(|(last, sizes)| {
             u64::from(*last) == element(header) && sizes.len() == header.dimensions.len() && !sizes.contains(&0)
@@ -138,7 +138,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Elements from all first bytes, then all second ones and so on.
+/// Elements from shuffled bytes: all first bytes, then all second ones and so on.
 fn unshuffled(bytes: &[u8], element: usize) -> Vec<u8> {
     let count = bytes.len().checked_div(element).unwrap_or(0);
     let mut elements = bytes.to_vec();
@@ -164,7 +164,7 @@ fn promised(header: &Header) -> u64 {
     all.unwrap_or(u64::MAX)
 }
 
-/// Puts a chunk, which may stand out over the end, where it belongs in a dataset.
+/// Copies a chunk, which may extend beyond the end, to its position in a dataset.
 fn place(bytes: &[u8], offsets: &[u64], chunk: &[u32], dimensions: &[u64], element: u64, joined: &mut [u8]) {
     let sizes: Vec<u64> = chunk[..dimensions.len()].iter().map(|&size| u64::from(size)).collect();
     let row = sizes.last().copied().unwrap_or(1);
@@ -176,7 +176,7 @@ fn place(bytes: &[u8], offsets: &[u64], chunk: &[u32], dimensions: &[u64], eleme
     }
 }
 
-/// The element of a dataset at which a row of a chunk begins, and how many of the row lie within it.
+/// The element of a dataset at which a row of a chunk begins, and the number of elements of the row inside the dataset.
 fn row_at(mut index: u64, offsets: &[u64], sizes: &[u64], dimensions: &[u64]) -> Option<(u64, u64)> {
     let Some(last) = dimensions.len().checked_sub(1) else {
         return Some((0, 1));

@@ -1,17 +1,17 @@
-//! Names of variables and fields, as MATLAB takes them.
+//! Valid MATLAB names of variables and fields.
 
 use std::collections::HashMap;
 
 use hdf5_pure::mat::identifier::sanitize_name;
 
-/// The longest, in characters.
+/// Largest length, characters.
 const LONGEST: usize = super::LONGEST_NAME;
 
-/// The names in one scope as they are written: what is no letter of ASCII, digit or `_` becomes `_`, `x` stands before a name that does
-/// not begin with a letter, `_` after a keyword, and a long name is cut off.
+/// The names in one scope as they are written: a character that is not an ASCII letter, a digit or `_` becomes `_`, `x`
+/// is prefixed to a name that does not begin with a letter, `_` is appended to a keyword, and a long name is cut.
 ///
 /// # Errors
-/// Two that would be written alike.
+/// Fails if two names would be written alike.
 pub(super) fn names<'a>(given: impl IntoIterator<Item = &'a str>) -> Result<Vec<String>, String> {
     let mut known = HashMap::new();
     let written = given.into_iter().map(|name| {

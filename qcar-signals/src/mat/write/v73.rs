@@ -1,15 +1,15 @@
-//! MAT-files of version 7.3, written: HDF5 as MATLAB reads it. Nothing is packed.
+//! Writes MAT-files of version 7.3: HDF5 as MATLAB reads it, not compressed.
 
 use hdf5_pure::mat::{MatBuilder, MatError, Options};
 
 use super::Array;
 use super::names::names;
 
-/// A file with these variables, named as in [`v5`](super::v5). A structure array of another length than one becomes a cell array of
-/// structures.
+/// A file with these variables, named as in [`v5`](super::v5). A structure array with a length other than one becomes a
+/// cell array of structures.
 ///
 /// # Errors
-/// As [`v5`](super::v5); what else the writer of HDF5 says, which nothing that an [`Array`] may hold is known to bring about.
+/// Fails as [`v5`](super::v5) does, or with an error of the HDF5 writer; no [`Array`] is known to cause one.
 pub fn v73(variables: &[(String, Array)]) -> Result<Vec<u8>, String> {
     let names = names(variables.iter().map(|(name, _)| &**name))?;
     let mut file = MatBuilder::new(Options::default());

@@ -7,7 +7,7 @@ use super::Planner;
 use crate::verbs::target::file;
 
 impl Planner<'_, '_> {
-    /// What must hold between parameters: those that follow are moved, sums are limits.
+    /// Reads the couplings: parameters that follow others become moves, sums become limits.
     pub(super) fn couplings(&mut self, knobs: &[Knob], moves: &mut Vec<Move>) -> Vec<(String, Coupling)> {
         let mut couplings = Vec::new();
         for own in &self.read.file.couplings {
@@ -93,7 +93,8 @@ impl Planner<'_, '_> {
         couplings
     }
 
-    /// Checks a parameter that is a factor times a knob, at both ends of its range; else what was found and expected.
+    /// Checks a parameter that is a factor times a knob at both ends of its range. Fails with what was found and what
+    /// was expected.
     fn can_follow(&self, place: usize, (knob, leader): (&Knob, usize), factor: f64) -> Result<(), (String, String)> {
         let (model, about) = (&self.subject.model, self.subject.model.about());
         let own = &about.parameters[place];

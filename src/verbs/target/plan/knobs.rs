@@ -7,7 +7,7 @@ use super::Planner;
 use crate::verbs::target::file::{self, Amount};
 
 impl Planner<'_, '_> {
-    /// What may move, with its unit and what it moves.
+    /// The knobs, with their units and the parameters that they move.
     pub(super) fn knobs(&mut self) -> (Vec<Knob>, Vec<String>, Vec<Move>) {
         let (mut knobs, mut units, mut moves): (Vec<Knob>, Vec<String>, Vec<Move>) = Default::default();
         for own in &self.read.file.parameters {

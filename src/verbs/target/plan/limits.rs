@@ -7,7 +7,7 @@ use super::{Planner, Wanted};
 use crate::verbs::sensitivity::chosen::fits;
 use crate::verbs::target::file;
 
-/// A target with the readings that it is of.
+/// A target with its readings.
 pub(super) struct Sought<'a> {
     pub target: &'a file::Target,
     pub readings: Vec<Reading>,
@@ -98,7 +98,7 @@ impl<'a> Planner<'a, '_> {
         }
     }
 
-    /// The limits of all readings, and what they are.
+    /// The limits of all readings, with their descriptions.
     pub(super) fn limits(&mut self, sought: &[Sought<'a>], today: &[f64]) -> (Vec<Limit>, Vec<Wanted>) {
         let (mut limits, mut wanted): (Vec<Limit>, Vec<Wanted>) = Default::default();
         for Sought { target, readings } in sought {
@@ -163,7 +163,7 @@ impl<'a> Planner<'a, '_> {
     }
 }
 
-/// True of two limits of one result that no value can meet.
+/// True if no value can meet both limits of one result.
 fn contradict(a: &Limit, b: &Limit) -> bool {
     let [low, high] = match (a.sense, b.sense) {
         (Sense::AtLeast, Sense::AtMost) => [a, b],

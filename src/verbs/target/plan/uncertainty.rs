@@ -10,7 +10,7 @@ use crate::verbs::sensitivity::{Percent, per_kelvin};
 use crate::verbs::target::file::Uncertainty;
 
 impl Planner<'_, '_> {
-    /// What is not known, and with which probability each target is to hold at the design, where the file says one.
+    /// The uncertainty, and the required probability of each target at the design, if the file states one.
     pub(super) fn uncertainty(&mut self) -> (Doubts, Option<f64>) {
         let usual = Uncertainty::default();
         let own = self.read.file.uncertainty.as_ref().unwrap_or(&usual);

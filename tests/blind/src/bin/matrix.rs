@@ -1,7 +1,7 @@
-//! Runs the blind matrix: makes campaigns, lets `qcar discover` answer, and prints how often it is right.
+//! Runs the blind matrix: makes campaigns, runs `qcar discover` on each, and prints how often its answer is right.
 //!
-//! `matrix [OPTION]…` runs cases and adds a line for each to a file; `matrix --table FILE` prints the Markdown tables of all
-//! lines in it.
+//! `matrix [OPTION]…` runs cases and appends a line for each to a file; `matrix --table FILE` prints Markdown tables of
+//! all lines in that file.
 
 use std::fs;
 use std::io::Write as _;
@@ -32,7 +32,7 @@ const USAGE: &str = "matrix [OPTION]... | matrix --table FILE
   --perturb A,B   searches each case again with each of these assumed numbers (discover/numbers.rs) 30 % lower and higher,
                   and counts the answers that change";
 
-/// The file in which a kept campaign has its strength.
+/// The file in a kept campaign's folder that holds the strength of its hidden effects.
 const STRENGTH: &str = "strength.txt";
 
 fn main() -> ExitCode {
@@ -45,7 +45,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// What is asked for.
+/// The options of the command line.
 struct Asked {
     qcar: PathBuf,
     seeds: Vec<u64>,
@@ -139,13 +139,13 @@ fn part(text: &str) -> Result<(usize, usize), String> {
     Ok((part, of))
 }
 
-/// The binary that was built beside this one.
+/// The `qcar` binary in the folder of this one.
 fn beside_this() -> Result<PathBuf, String> {
     let this = std::env::current_exe().map_err(|e| e.to_string())?;
     Ok(this.with_file_name("qcar"))
 }
 
-/// The lines of a file; of several for one case the last counts.
+/// The lines of a file. If a case has several lines, the last one counts.
 fn read(path: &Path) -> Result<Vec<Outcome>, String> {
     let text = fs::read_to_string(path).map_err(|e| at(path, e))?;
     let lines = text.lines().filter(|line| *line != HEADER);
@@ -170,7 +170,7 @@ fn wanted(asked: &Asked) -> Vec<Case> {
     wanted.skip(part - 1).step_by(of).collect()
 }
 
-/// Every job takes the next case that nobody has.
+/// Each job takes the next case that no other job has taken.
 fn answer_all(asked: &Asked, cases: &[Case]) -> Result<Vec<Outcome>, String> {
     let (next, outcomes) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
     let job = || {
@@ -204,7 +204,7 @@ fn add_line(out: &Path, outcome: &Outcome) -> std::io::Result<()> {
     writeln!(file, "{}", outcome.line())
 }
 
-/// What each answer owes to each assumed number: prints those that change, and how many of all do.
+/// How each answer depends on each assumed number: prints the answers that change and counts them.
 fn perturb(asked: &Asked) -> Result<(), String> {
     let (mut changed, mut all) = (0, 0);
     for case in wanted(asked) {
@@ -227,7 +227,7 @@ fn perturb(asked: &Asked) -> Result<(), String> {
     Ok(())
 }
 
-/// A verdict with its names.
+/// The verdict and the names of the effects.
 fn told(outcome: &Outcome) -> String {
     let names = outcome.named.iter().chain(&outcome.alike).map(Place::words);
     format!("{} {}", outcome.verdict, names.collect::<Vec<_>>().join(" "))
@@ -261,12 +261,12 @@ fn answer(asked: &Asked, case: &Case, assume: Option<&str>) -> Result<Outcome, S
     Ok(Outcome::new(case, &answer, strength(case, &folder)?))
 }
 
-/// Makes a campaign, unless it is there; it is there only as a whole.
+/// Makes a campaign unless its folder exists. The folder appears only when the campaign is complete.
 fn make_once(case: &Case, folder: &Path) -> Result<(), String> {
     if folder.exists() {
         return Ok(());
     }
-    // A campaign is called as its folder is.
+    // A campaign has the name of its folder.
     let making = folder
         .with_file_name("making")
         .join(folder.file_name().unwrap_or_default());
@@ -277,7 +277,7 @@ fn make_once(case: &Case, folder: &Path) -> Result<(), String> {
     fs::rename(&making, folder).map_err(|e| at(folder, e))
 }
 
-/// How strong what a campaign hides is, over what can be separated from noise.
+/// The strength of the effects that a campaign hides, in units of the noise.
 fn strength(case: &Case, folder: &Path) -> Result<f64, String> {
     let file = folder.join(STRENGTH);
     if let Ok(text) = fs::read_to_string(&file) {

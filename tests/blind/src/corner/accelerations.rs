@@ -1,4 +1,4 @@
-//! The forces on a corner as accelerations of what they act on.
+//! The accelerations that the forces on a corner cause.
 
 use super::{
     BELT, BODY, COORDINATES, Corner, FLEX, FLUID, FRICTION, Forces, OTHER, PITCH, PWT, RESONATOR, SF, State, TM, WHEEL,
@@ -75,7 +75,7 @@ impl Corner<'_> {
         acceleration[WHEEL] = (b * f1 + m1 * f2) / det;
     }
 
-    /// A rigid body over both axles: the mass matrix of its heights above them.
+    /// A rigid body over both axles: the mass matrix for its vertical displacements above the two axles.
     fn couple_by_body(&self, apparent: Apparent, f: &Forces, g: f64, acceleration: &mut [f64]) {
         let a = self.axle;
         let here = self.body();

@@ -1,4 +1,4 @@
-//! The tyre of a corner: what stands in it, and what it remembers.
+//! The tyre of a corner: its sidewall, its resonator and its relaxing branch.
 
 use super::{BELT, COORDINATES, Corner, Forces, OTHER_LAW, Push, RESONATOR, State, TIRE_BRANCH, WHEEL};
 
@@ -27,12 +27,13 @@ impl Corner<'_> {
         }
     }
 
-    /// What relaxes in the tyre, N, positive in compression.
+    /// Force of the relaxing branch, N, positive in compression.
     pub fn tire_memory(&self, y: &State) -> f64 {
         y[TIRE_BRANCH] + self.laws.other.map_or(0.0, |law| law.tire_memory(&y[OTHER_LAW..]))
     }
 
-    /// Force of the standing tyre for a compression of its tread from rest, N, positive on the ring.
+    /// Force of the tyre that does not roll, N, for a compression of its tread from rest, m; positive if it pushes the
+    /// ring up.
     pub fn tire_force(&self, y: &State, compression: f64, rate: f64) -> f64 {
         let whole = self.whole_tire(compression, |s| self.standing(s));
         let memory = if self.laws.rolling_only {
@@ -43,7 +44,7 @@ impl Corner<'_> {
         self.standing(whole) + self.axle.c_tire * rate + memory
     }
 
-    /// Elastic force of the whole standing tyre for a compression from rest, N.
+    /// Elastic force of the whole tyre that does not roll, N, for a compression from rest, m.
     fn standing(&self, compression: f64) -> f64 {
         let a = self.axle;
         let linear = a.k_tire * compression;
@@ -55,8 +56,8 @@ impl Corner<'_> {
         linear + a.k_tire * growth * compression * compression + other
     }
 
-    /// How far the whole tyre is compressed where its tread is, m, by Newton's method. Tread and sidewalls in series have
-    /// the elastic `force` that the whole tyre was measured to have.
+    /// The compression of the whole tyre, m, that belongs to a compression of its tread, by Newton's method. Tread and
+    /// sidewalls in series have the elastic `force` that was measured for the whole tyre.
     pub fn whole_tire(&self, tread: f64, force: impl Fn(f64) -> f64) -> f64 {
         let Some(belt) = self.laws.belt else { return tread };
         let tread_of = |whole: f64| whole - force(whole) / belt.k_sidewall;
@@ -79,7 +80,7 @@ mod tests {
     use crate::corner::{Corner, STATES};
     use crate::hidden::{Hidden, Laws};
 
-    /// Pressed slowly, the tread gives way by its own law and the sidewalls beside it: together by that of the tyre.
+    /// Under slow compression, tread and sidewalls in series follow the law of the whole tyre.
     #[test]
     fn a_belt_leaves_the_tyre_its_static_stiffness() {
         let layout = Layout {

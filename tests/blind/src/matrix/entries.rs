@@ -1,22 +1,22 @@
-//! The effects that the matrix hides, with what is a weak, a usual and a strong one.
+//! The effects that the matrix hides, each with weak, usual and strong parameters.
 
 use crate::hidden::Hidden;
 use crate::random::Random;
 
 /// An effect with its parameters at three strengths.
 pub struct Entry {
-    /// Of the catalogue, or any other.
+    /// A name from the catalogue, or another.
     pub name: &'static str,
     /// Link, mass or sensor location.
     pub at: &'static str,
-    /// Empty for the usual one.
+    /// Form of the effect; empty for the usual one.
     pub form: &'static str,
-    /// The axle that it is hidden in.
+    /// The axle that hides it.
     pub axle: &'static str,
     parameters: &'static [(&'static str, [f64; 3])],
 }
 
-/// An entry in the usual form.
+/// An entry for an effect in its usual form.
 pub const fn entry(
     name: &'static str,
     at: &'static str,
@@ -38,7 +38,7 @@ impl Entry {
         self
     }
 
-    /// At one of its three strengths.
+    /// The effect at one of its three strengths.
     pub fn hidden(&self, strength: usize) -> Hidden {
         let parameters: Vec<(&str, f64)> = self
             .parameters
@@ -48,9 +48,9 @@ impl Entry {
         Hidden::new(self.name, self.at, &parameters).form(self.form)
     }
 
-    /// With parameters drawn between those of the weakest and of the strongest, log-uniform. `strengths` are the ends of
-    /// what is drawn: 0 is the weakest and 1 the strongest. Parameters go along with the strength, a quarter of the way
-    /// more or less.
+    /// The effect with a random strength between the two `strengths`, where 0 is the weakest and 1 the strongest. Each
+    /// parameter lies log-uniformly between its weakest and strongest value, within a quarter of that range of the
+    /// strength.
     pub fn drawn(&self, strengths: (f64, f64), random: &mut Random) -> Hidden {
         let strength = random.uniform(strengths.0, strengths.1);
         let parameters: Vec<(&str, f64)> = self
@@ -64,14 +64,14 @@ impl Entry {
         Hidden::new(self.name, self.at, &parameters).form(self.form)
     }
 
-    /// Name and place, for people.
+    /// Name and place as text.
     pub fn title(&self) -> String {
         let form = if self.form.is_empty() { "" } else { "/" };
         format!("{}@{}{form}{}", self.name, self.at, self.form)
     }
 }
 
-/// A gain departs from 1, to either side; all else grows or falls from its weakest value to its strongest.
+/// A gain deviates from 1, to either side. Each other parameter grows or falls from its weakest value to its strongest.
 fn between(name: &str, values: [f64; 3], along: f64, random: &mut Random) -> f64 {
     let power = |from: f64, to: f64| from * (to / from).powf(along);
     if name == "gain" {
@@ -307,14 +307,14 @@ pub const SINGLES: [Entry; 32] = [
     ),
 ];
 
-/// Effects that the catalogue does not have.
+/// Effects that are not in the catalogue.
 pub const OUTSIDE: [Entry; 3] = [
     entry("damper_fade", "damper", "c", &[("share", [0.1, 0.2, 0.4])]),
     entry("cubic_top_mount", "top_mount", "a", &[("k3", [3e11, 1e12, 4e12])]),
     entry("sensor_saturation", "body", "c", &[("soft_limit", [20.0, 10.0, 5.0])]),
 ];
 
-/// Effects that the catalogue has in no form, which the first draws did not have either.
+/// Effects that the catalogue has in no form. The first seeds do not draw them.
 pub const OUTSIDE_LATER: [Entry; 2] = [
     entry("position_damper", "damper", "c", &[("travel", [0.04, 0.02, 0.01])]),
     entry(

@@ -1,8 +1,8 @@
-//! Effects in another form than the catalogue's, and which of its names are of their family.
+//! Effects whose laws differ from the catalogue's, and the catalogue's names that belong to the same family.
 
 use super::entries::{Entry, entry};
 
-/// The laws, each with the names that count as it at the same place.
+/// The laws, each with the names that count as right at the same place.
 pub const OTHER_LAWS: [(Entry, &str); 13] = [
     (
         entry(
@@ -113,7 +113,7 @@ pub const OTHER_LAWS: [(Entry, &str); 13] = [
     ),
 ];
 
-/// The names, with bars between them, that count as a law; a law of the catalogue counts as itself.
+/// The names, separated by `|`, that count as right for a law; a law of the catalogue counts as itself.
 pub fn family(name: &str) -> &str {
     let own = OTHER_LAWS.iter().find(|(entry, _)| entry.name == name);
     own.map_or(name, |(_, names)| names)

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use num_complex::Complex64;
 
-use super::seen::Seen;
+use super::observable::Observable;
 use crate::check::Checked;
 use crate::check::sample::{Point, Values};
 use crate::check::slopes::slopes;
@@ -12,14 +12,15 @@ use crate::derive::motion::Motion;
 use crate::expr::{Differential, Expr, Graph, LinkId, Symbol};
 use crate::model::Signal;
 
-/// The laws that are seen by their force itself. What only shifts the place of rest is seen by nothing but the force.
+/// The laws whose force itself is observed. A parameter that only shifts the position of rest changes no response, but
+/// it changes the force.
 pub struct Forces {
     laws: Vec<Vec<Part>>,
-    /// True where a law is not linear.
+    /// True if a law is nonlinear.
     pub bends: bool,
 }
 
-/// A part of what is seen: a factor times something, with its derivatives by estimated parameters.
+/// A term of an observed force: a factor times a value, with the derivatives of the value by the estimated parameters.
 struct Part {
     factor: Expr,
     value: Expr,
@@ -27,7 +28,7 @@ struct Part {
 }
 
 impl Forces {
-    /// Of a model; what is derived grows in the graph.
+    /// The laws of a model; their derivatives are added to the graph.
     pub fn of(model: &Checked, motion: &Motion, graph: &mut Graph, estimated: &[u16]) -> Forces {
         let equations = Equations::of(motion, graph);
         let slopes = slopes(model, graph);
@@ -60,12 +61,12 @@ impl Forces {
         }
     }
 
-    /// The forces at a point, with their derivatives by so many parameters.
-    pub fn seen(&self, graph: &Graph, point: &Point, parameters: usize) -> Vec<Seen> {
+    /// The forces at a point, with their derivatives; `parameters` is the number of estimated parameters.
+    pub fn seen(&self, graph: &Graph, point: &Point, parameters: usize) -> Vec<Observable> {
         let leaf = |symbol| point.leaf(symbol);
         let values = Values::new(graph, &leaf);
         let force = |parts: &Vec<Part>| {
-            let mut seen = Seen {
+            let mut seen = Observable {
                 value: Complex64::default(),
                 gradient: vec![Complex64::default(); parameters],
             };
@@ -95,7 +96,7 @@ fn gradient(graph: &mut Graph, e: Expr, estimated: &[u16]) -> Vec<(usize, Expr)>
     gradient
 }
 
-/// What each definition, and the rate of each state, depends on.
+/// Dependencies of each definition and of the rate of each state.
 struct Equations {
     depends: Vec<(Symbol, BTreeSet<Symbol>)>,
     outputs: BTreeSet<Symbol>,
@@ -111,7 +112,7 @@ impl Equations {
         }
     }
 
-    /// Whether any output changes, at some time, where this does.
+    /// True if a change of this symbol changes an output at some time.
     fn reach_outputs(&self, from: Symbol) -> bool {
         let mut reached = BTreeSet::from([from]);
         loop {

@@ -7,14 +7,14 @@ use num_complex::Complex64;
 use qcar_model::{Entry, Matrix};
 
 use super::forces::Forces;
-use super::seen::Seen;
+use super::observable::Observable;
 use crate::check::Checked;
 use crate::check::sample::{Kind, Point, Values};
 use crate::check::solve::solve;
 use crate::derive::linear::Linear;
 use crate::derive::motion::Motion;
 use crate::derive::response::sources;
-use crate::derive::vectors::Source;
+use crate::derive::vectors::ExcitationSource;
 use crate::expr::{Graph, Symbol};
 use crate::hash::HashMap;
 use crate::model::{CoordinateKind, Quantity, Reference, Signal};
@@ -24,29 +24,30 @@ const PLAIN: [f64; 6] = [0.3, 0.7, 1.1, 1.9, 3.1, 5.3];
 /// Angular frequencies for declared values, rad/s.
 const DECLARED: [f64; 6] = [5.0, 11.0, 23.0, 47.0, 80.0, 160.0];
 
-/// Responses below this part of the largest are roundoff.
+/// Responses below this fraction of the largest are roundoff.
 const ROUNDOFF: f64 = 1e-12;
 
 /// A model with its equations, and the parameters of interest.
 pub struct Derived<'a> {
     /// The model.
     pub model: &'a Checked,
-    /// Where all expressions live.
+    /// The graph of all expressions.
     pub graph: &'a Graph,
     /// Its equations.
     pub motion: &'a Motion,
     /// Its matrices.
     pub linear: &'a Linear,
-    /// What shows of laws that are not linear.
+    /// The observed forces of nonlinear laws.
     pub forces: Forces,
-    /// The places of the parameters, in order.
+    /// Positions of the estimated parameters in the model, in increasing order.
     pub estimated: &'a [u16],
 }
 
 impl Derived<'_> {
-    /// Everything that can be seen at one parameter set: responses of outputs and channels to each input, and for laws that
-    /// are not linear the change of the force itself, in so many motions or until there are `enough`.
-    pub fn seen(&self, point: Point, motions: u64, enough: usize) -> Vec<Seen> {
+    /// Everything that can be observed at one parameter set: the responses of outputs and channels to each input and,
+    /// for nonlinear laws, the change of the force itself. Evaluates up to `motions` motions, and stops as soon as
+    /// there are `enough` values.
+    pub fn seen(&self, point: Point, motions: u64, enough: usize) -> Vec<Observable> {
         let has_clock = self.model.parameters.iter().any(|parameter| parameter.clock);
         let motions = if self.forces.bends || has_clock { motions } else { 1 };
         let frequencies = if point.kind == Kind::Plain { PLAIN } else { DECLARED };
@@ -81,15 +82,15 @@ fn defined(known: &std::cell::RefCell<HashMap<Symbol, f64>>, symbol: Symbol) -> 
 struct Matrices<'a> {
     derived: &'a Derived<'a>,
     entries: Vec<(Entry, f64)>,
-    /// Their derivatives, with the place of the parameter among the estimated ones.
+    /// Their derivatives, each with the position of its parameter among the estimated ones.
     changes: Vec<(Entry, usize, f64)>,
 }
 
-/// What one excitation does: the inputs, the states, the outputs.
+/// Inputs, states and outputs under one excitation of unit amplitude.
 struct Excited {
     inputs: Vec<Complex64>,
     states: Vec<Complex64>,
-    outputs: Vec<Seen>,
+    outputs: Vec<Observable>,
 }
 
 impl<'a> Matrices<'a> {
@@ -110,8 +111,8 @@ impl<'a> Matrices<'a> {
         }
     }
 
-    /// Adds what is seen at a frequency.
-    fn look(&self, frequency: f64, seen: &mut Vec<Seen>) {
+    /// Adds the responses at an angular frequency, rad/s.
+    fn look(&self, frequency: f64, seen: &mut Vec<Observable>) {
         let model = self.derived.model;
         for (source, excited) in self.excite(frequency) {
             add_relative(excited.outputs.clone(), seen);
@@ -120,18 +121,18 @@ impl<'a> Matrices<'a> {
                 let above = signal(&channel.numerator)?;
                 match &channel.denominator {
                     Reference::Signal(below) => Some(above.over(&signal(below)?)),
-                    Reference::Force(place) => (source == Source::Force(*place)).then_some(above),
+                    Reference::Force(place) => (source == ExcitationSource::Force(*place)).then_some(above),
                 }
             });
             add_relative(ratios.collect(), seen);
         }
     }
 
-    /// The answers to a unit of each excitation.
-    fn excite(&self, frequency: f64) -> Vec<(Source, Excited)> {
+    /// The response to each excitation of unit amplitude.
+    fn excite(&self, frequency: f64) -> Vec<(ExcitationSource, Excited)> {
         let motion = self.derived.motion;
         let inputs = |source| motion.inputs.iter().map(move |&input| share(source, input, frequency));
-        let sources: Vec<(Source, Vec<Complex64>)> = sources(self.derived.model)
+        let sources: Vec<(ExcitationSource, Vec<Complex64>)> = sources(self.derived.model)
             .into_iter()
             .map(|source| (source, inputs(source).collect()))
             .collect();
@@ -152,7 +153,7 @@ impl<'a> Matrices<'a> {
         }
         let adjoints = solve(transposed(&resists), adjoints);
         let states = solve(resists, pushed);
-        let excited = |((source, inputs), states): ((Source, Vec<Complex64>), Vec<Complex64>)| {
+        let excited = |((source, inputs), states): ((ExcitationSource, Vec<Complex64>), Vec<Complex64>)| {
             let excited = Excited {
                 inputs,
                 states,
@@ -165,8 +166,8 @@ impl<'a> Matrices<'a> {
     }
 
     /// The outputs under one excitation, with their derivatives.
-    fn outputs(&self, excited: &Excited, adjoints: &[Vec<Complex64>]) -> Vec<Seen> {
-        let still = Seen {
+    fn outputs(&self, excited: &Excited, adjoints: &[Vec<Complex64>]) -> Vec<Observable> {
+        let still = Observable {
             value: Complex64::default(),
             gradient: vec![Complex64::default(); self.derived.estimated.len()],
         };
@@ -191,13 +192,19 @@ impl<'a> Matrices<'a> {
         outputs
     }
 
-    /// A signal of a channel: a prescribed motion, or what follows from an output.
-    fn signal(&self, signal: &Signal, source: Source, excited: &Excited, frequency: f64) -> Option<Seen> {
+    /// A signal of a channel: a prescribed motion, or a signal that follows from an output.
+    fn signal(
+        &self,
+        signal: &Signal,
+        source: ExcitationSource,
+        excited: &Excited,
+        frequency: f64,
+    ) -> Option<Observable> {
         let model = self.derived.model;
         if let Signal::Motion(c, quantity) = *signal
             && let CoordinateKind::Road | CoordinateKind::Motion = model.coordinates[usize::from(c.0)].kind
         {
-            return Some(Seen {
+            return Some(Observable {
                 value: share(source, Symbol::of_motion(c, quantity), frequency),
                 gradient: vec![Complex64::default(); self.derived.estimated.len()],
             });
@@ -210,18 +217,18 @@ impl<'a> Matrices<'a> {
     }
 }
 
-/// What an input is under a unit of an excitation.
-fn share(source: Source, input: Symbol, frequency: f64) -> Complex64 {
+/// The amplitude of an input under an excitation of unit amplitude.
+fn share(source: ExcitationSource, input: Symbol, frequency: f64) -> Complex64 {
     match (source, input) {
-        (Source::Motion(own), Symbol::Position(c)) if own == c => 1.0.into(),
-        (Source::Motion(own), Symbol::Velocity(c)) if own == c => Complex64::new(0.0, frequency),
-        (Source::Motion(own), Symbol::Acceleration(c)) if own == c => (-frequency * frequency).into(),
-        (Source::Force(own), Symbol::Force(place)) if own == place => 1.0.into(),
+        (ExcitationSource::Motion(own), Symbol::Position(c)) if own == c => 1.0.into(),
+        (ExcitationSource::Motion(own), Symbol::Velocity(c)) if own == c => Complex64::new(0.0, frequency),
+        (ExcitationSource::Motion(own), Symbol::Acceleration(c)) if own == c => (-frequency * frequency).into(),
+        (ExcitationSource::Force(own), Symbol::Force(place)) if own == place => 1.0.into(),
         _ => Complex64::default(),
     }
 }
 
-/// How many time derivatives lead from a signal to another of the same point.
+/// Number of time derivatives from one signal to another of the same point; `None` for signals of different points.
 fn orders(from: &Signal, to: &Signal) -> Option<i32> {
     let order = |quantity: &Quantity| *quantity as i32;
     match (from, to) {
@@ -236,12 +243,12 @@ fn transposed(matrix: &[Vec<Complex64>]) -> Vec<Vec<Complex64>> {
     (0..matrix.len()).map(column).collect()
 }
 
-/// Responses that are not roundoff against the largest, which would say nothing.
-fn add_relative(responses: Vec<Seen>, seen: &mut Vec<Seen>) {
-    let finite = |response: &Seen| response.value.norm().is_finite();
-    let responses: Vec<Seen> = responses.into_iter().filter(finite).collect();
+/// Adds the responses that are large enough to be more than roundoff.
+fn add_relative(responses: Vec<Observable>, seen: &mut Vec<Observable>) {
+    let finite = |response: &Observable| response.value.norm().is_finite();
+    let responses: Vec<Observable> = responses.into_iter().filter(finite).collect();
     let largest = responses.iter().map(|response| response.value.norm());
     let largest = largest.fold(0.0_f64, f64::max);
-    let heard = |response: &Seen| response.value.norm() > ROUNDOFF * largest;
+    let heard = |response: &Observable| response.value.norm() > ROUNDOFF * largest;
     seen.extend(responses.into_iter().filter(heard));
 }

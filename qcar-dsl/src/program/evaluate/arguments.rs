@@ -9,29 +9,29 @@ use crate::derive::vectors::Vectors;
 use crate::expr::Symbol;
 use crate::program::{Op, Program};
 
-/// A part of what is given.
+/// An argument of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Part {
-    /// One value each.
+    /// Parameters.
     Parameters,
-    /// What was prepared of them.
+    /// Constants, which were prepared from the parameters.
     Constants,
     /// `x`
     States,
     /// `u`
     Inputs,
-    /// Stretch, rate and forces of a rolling tyre.
+    /// Stretch, rate and forces of a rolling tyre: m, m/s, N.
     Contact,
     /// rad/s
     Frequency,
 }
 
-/// What the leaves of a program are read from: the entries of each part, none unless they are given.
+/// The arguments of a program, from which its leaves are read: the entries of each part, empty unless set.
 #[derive(Clone, Copy, Default)]
-pub struct Given<'a>([&'a [f64]; 6]);
+pub struct Arguments<'a>([&'a [f64]; 6]);
 
-impl<'a> Given<'a> {
-    /// The same with a part.
+impl<'a> Arguments<'a> {
+    /// The same arguments with another part.
     #[inline]
     pub fn with(mut self, part: Part, entries: &'a [f64]) -> Self {
         self.0[part as usize] = entries;
@@ -45,21 +45,21 @@ impl<'a> Given<'a> {
     }
 }
 
-/// What a program reads that sees the parameters through what was prepared of them.
+/// The arguments of a program that reads prepared constants.
 #[inline]
-pub fn prepared<'a>(constants: &'a [f64], x: &'a [f64], u: &'a [f64]) -> Given<'a> {
+pub fn prepared<'a>(constants: &'a [f64], x: &'a [f64], u: &'a [f64]) -> Arguments<'a> {
     moving(x, u).with(Part::Constants, constants)
 }
 
-/// What a program reads that sees the parameters themselves.
+/// The arguments of a program that reads the parameters themselves.
 #[inline]
-pub fn unprepared<'a>(p: &'a [f64], x: &'a [f64], u: &'a [f64]) -> Given<'a> {
+pub fn unprepared<'a>(p: &'a [f64], x: &'a [f64], u: &'a [f64]) -> Arguments<'a> {
     moving(x, u).with(Part::Parameters, p)
 }
 
 #[inline]
-fn moving<'a>(x: &'a [f64], u: &'a [f64]) -> Given<'a> {
-    Given::default().with(Part::States, x).with(Part::Inputs, u)
+fn moving<'a>(x: &'a [f64], u: &'a [f64]) -> Arguments<'a> {
+    Arguments::default().with(Part::States, x).with(Part::Inputs, u)
 }
 
 /// A contact in the order of [`Part::Contact`].
@@ -68,19 +68,19 @@ pub fn contact_entries(contact: &Contact) -> [f64; 4] {
     [contact.s, contact.v, contact.force[0], contact.force[1]]
 }
 
-/// The entries of a part that a program reads, in order; they stand together in the registers, from `first`.
+/// The entries of a part that a program reads, in order. They occupy consecutive registers from `first`.
 #[derive(Clone, Debug)]
-pub struct Read {
-    /// Which.
+pub struct ReadEntries {
+    /// The part.
     pub part: Part,
-    /// Those that are read.
+    /// Positions of the entries in the part.
     pub entries: Vec<usize>,
-    /// The register of the first.
+    /// The register of the first entry.
     pub first: usize,
 }
 
-impl Read {
-    /// The registers that it fills.
+impl ReadEntries {
+    /// The registers of these entries.
     pub fn registers(&self) -> Range<usize> {
         self.first..self.first + self.entries.len()
     }
@@ -92,14 +92,14 @@ impl Read {
     }
 }
 
-/// What a program reads, in registers from the first, part by part.
-pub fn reads(vectors: &Vectors, program: &Program) -> Vec<Read> {
+/// The entries that a program reads, part by part, in registers from 0.
+pub fn reads(vectors: &Vectors, program: &Program) -> Vec<ReadEntries> {
     let leaves = program.ops.iter().filter_map(|op| place(vectors, op));
     let leaves: Vec<(Part, usize)> = leaves.collect::<BTreeSet<_>>().into_iter().collect();
     let mut first = 0;
     let parts = leaves.chunk_by(|one, next| one.0 == next.0).map(|leaves| {
         first += leaves.len();
-        Read {
+        ReadEntries {
             part: leaves[0].0,
             entries: leaves.iter().map(|leaf| leaf.1).collect(),
             first: first - leaves.len(),
@@ -108,13 +108,13 @@ pub fn reads(vectors: &Vectors, program: &Program) -> Vec<Read> {
     parts.collect()
 }
 
-/// The register of a leaf that is given; `None` of a number and of an operation.
-pub fn register(vectors: &Vectors, reads: &[Read], op: &Op) -> Option<usize> {
+/// The register of a leaf; `None` for a number or an operation.
+pub fn register(vectors: &Vectors, reads: &[ReadEntries], op: &Op) -> Option<usize> {
     let place = place(vectors, op)?;
     reads.iter().find_map(|read| read.register(place))
 }
 
-/// The part and place of a leaf in what is given; `None` of a number and of an operation.
+/// The part and the position of a leaf in the arguments; `None` for a number or an operation.
 pub fn place(vectors: &Vectors, op: &Op) -> Option<(Part, usize)> {
     match *op {
         Op::Prepared(place) => Some((Part::Constants, place as usize)),
@@ -123,7 +123,7 @@ pub fn place(vectors: &Vectors, op: &Op) -> Option<(Part, usize)> {
     }
 }
 
-/// The part and place of a symbol in what is given.
+/// The part and the position of a symbol in the arguments.
 fn place_of(vectors: &Vectors, symbol: Symbol) -> Option<(Part, usize)> {
     match symbol {
         Symbol::Frequency => Some((Part::Frequency, 0)),

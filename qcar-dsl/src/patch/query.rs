@@ -1,6 +1,6 @@
-//! Values of expressions in a model: each is evaluated as one of its derived quantities.
+//! Values of expressions in a model: each expression is added to the model as a derived quantity and evaluated.
 
-use super::base::Base;
+use super::model_tree::ModelTree;
 use crate::diagnostic::{Diagnostic, effects};
 use crate::expr::Symbol;
 use crate::front::resolve::options::select;
@@ -8,25 +8,24 @@ use crate::front::resolve::resolve;
 use crate::front::syntax::{Expression, Let, Name, Statement};
 use crate::model::{Default, Model};
 
-/// What somebody knows: values of the model's parameters by name, and of its
-/// [reference values](super::Scale) by theirs.
+/// Known values of the model's parameters and of its [reference values](super::Scale), by name.
 pub type Values<'a> = &'a dyn Fn(&str) -> Option<f64>;
 
-/// A derived quantity that a model is asked for.
-pub fn question(name: &str, value: &Expression) -> Statement {
+/// An expression as a derived quantity of a model.
+pub fn as_quantity(name: &str, value: &Expression) -> Statement {
     let (name, value, doc) = (Name::new(name), value.clone(), String::new());
     Statement::Let(Let { name, value, doc })
 }
 
-/// The model with questions in it, and why it cannot answer.
-pub fn with_questions(base: &Base, questions: Vec<Statement>) -> (Model, Vec<Diagnostic>) {
+/// The model with further derived quantities, and the diagnostics about them.
+pub fn with_quantities(base: &ModelTree, quantities: Vec<Statement>) -> (Model, Vec<Diagnostic>) {
     let mut axle = base.axle.clone();
-    axle.body.extend(questions);
+    axle.body.extend(quantities);
     let mut found = Vec::new();
     let member = select(&axle, None, &mut found);
     let (model, more) = resolve(&axle, &member, &base.elements());
     found.extend(more);
-    // The questions themselves are used by nothing.
+    // The added quantities are unused on purpose.
     found.retain(|diagnostic| !effects::is_about_use(diagnostic));
     (model, found)
 }
@@ -41,10 +40,13 @@ pub fn value(model: &Model, e: crate::expr::Expr, values: Values) -> f64 {
 }
 
 /// The values of expressions, in their order; NaN if unknown or if the model has mistakes.
-pub fn numbers(base: &Base, asked: &[Expression], values: Values) -> Vec<f64> {
-    let name = |place: usize| format!("question {place}");
-    let questions = asked.iter().enumerate();
-    let (model, _) = with_questions(base, questions.map(|(place, e)| question(&name(place), e)).collect());
+pub fn numbers(base: &ModelTree, asked: &[Expression], values: Values) -> Vec<f64> {
+    let name = |place: usize| format!("quantity {place}");
+    let quantities = asked.iter().enumerate();
+    let (model, _) = with_quantities(
+        base,
+        quantities.map(|(place, e)| as_quantity(&name(place), e)).collect(),
+    );
     let answer = |place: usize| {
         let mut definitions = model.definitions.iter();
         let own = definitions.find(|definition| definition.name == name(place))?;
@@ -55,7 +57,7 @@ pub fn numbers(base: &Base, asked: &[Expression], values: Values) -> Vec<f64> {
         .collect()
 }
 
-/// The value of a parameter: what somebody knows, its default, or the middle of its range.
+/// The value of a parameter: the known one, its default, or the middle of its range.
 fn known(model: &Model, index: u16, values: Values) -> f64 {
     let parameter = &model.parameters[usize::from(index)];
     let default = match parameter.default {

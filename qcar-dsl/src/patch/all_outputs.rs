@@ -1,6 +1,6 @@
 //! A model that outputs the motion of all its parts.
 
-use super::base::{Base, coordinates, links};
+use super::model_tree::{ModelTree, coordinates, links};
 use crate::check::Checked;
 use crate::check::check_text;
 use crate::diagnostic::Report;
@@ -10,9 +10,9 @@ use crate::source::Source;
 /// The model with the stretch and the force of every link and the acceleration of every mass among its outputs.
 ///
 /// # Errors
-/// None, but for a mistake of this function: what stands in a model can be shown.
-pub fn watched(model: &Checked) -> Result<Checked, Report> {
-    let mut tree = Base::of(model);
+/// Fails only through a mistake in this function, since every part of a checked model can be an output.
+pub fn with_all_outputs(model: &Checked) -> Result<Checked, Report> {
+    let mut tree = ModelTree::of(model);
     for statement in &mut tree.axle.body {
         if let Statement::Direction(direction) = statement {
             let shown: Vec<Statement> = shown(direction);

@@ -1,4 +1,4 @@
-//! A model as a tree that can be queried and changed: options resolved, and zero parts left out.
+//! A model as a tree that can be queried and changed. Its options are resolved, and parts that are zero are left out.
 
 use super::rewrite;
 use crate::check::Checked;
@@ -9,17 +9,17 @@ use crate::front::syntax::{
 
 /// The tree of a plain axle.
 #[derive(Clone, Debug)]
-pub struct Base {
+pub struct ModelTree {
     /// The axle.
     pub axle: Axle,
-    /// What its laws use.
+    /// The elements that its laws use.
     elements: Vec<Element>,
 }
 
-impl Base {
-    /// The tree of a model's text. A model without text has nothing that could be changed.
-    pub fn of(model: &Checked) -> Base {
-        let mut base = Base {
+impl ModelTree {
+    /// The tree of a model's text; empty for a model without text.
+    pub fn of(model: &Checked) -> ModelTree {
+        let mut base = ModelTree {
             axle: Axle {
                 kind: AxleKind::Plain,
                 name: Name::new(&model.name),
@@ -47,7 +47,7 @@ impl Base {
         }
     }
 
-    /// What the elements are.
+    /// The elements.
     pub fn elements(&self) -> Vec<&Element> {
         self.elements.iter().collect()
     }
@@ -88,7 +88,7 @@ impl Base {
         })
     }
 
-    /// Something that moves, by its name or that of a point of it.
+    /// A coordinate, by its name or that of a point of it.
     pub fn coordinate(&self, direction: &str, name: &str) -> Option<&Coordinate> {
         let name = self.pointed_at(direction, name);
         coordinates(self.direction(direction)?).find(|coordinate| coordinate.name.text == name)
@@ -108,7 +108,7 @@ impl Base {
         })
     }
 
-    /// What a name of a point stands for in the end; any other name for itself.
+    /// The coordinate that a point renames, directly or through other points; any other name is returned unchanged.
     pub fn pointed_at(&self, direction: &str, name: &str) -> String {
         let target = self.direction(direction).and_then(|direction| {
             direction.body.iter().find_map(|statement| match statement {
@@ -125,7 +125,7 @@ impl Base {
         }
     }
 
-    /// Whether the model says itself what is to be seen.
+    /// True if the model declares outputs.
     pub fn declares_outputs(&self) -> bool {
         let inside = self.directions().flat_map(|direction| &direction.body);
         let mut all = self.axle.body.iter().chain(inside);
@@ -145,7 +145,7 @@ impl Base {
             .find(|statement| statement.name().is_some_and(|own| own.text == name))
     }
 
-    /// Whether a direction declares a name.
+    /// True if a direction declares a name.
     pub fn declares(&self, direction: &str, name: &str) -> bool {
         let body = self.direction(direction).map(|direction| direction.body.as_slice());
         let mut names = body.unwrap_or_default().iter().filter_map(Statement::name);
@@ -157,7 +157,8 @@ impl Base {
         change_all(&mut self.axle.body, change);
     }
 
-    /// An option that removes a part leaves `let m_part = 0 kg;`. Without it, the part can come back.
+    /// Removes quantities that are zero: an option that removes a part leaves `let m_part = 0 kg;`, whose name an
+    /// effect may use.
     fn leave_out_zeros(&mut self) {
         let is_zero = |statement: &Statement| matches!(statement, Statement::Let(let_) if is_zero(&let_.value));
         let (zeros, body): (Vec<_>, Vec<_>) = std::mem::take(&mut self.axle.body).into_iter().partition(is_zero);
@@ -178,7 +179,7 @@ pub fn links(direction: &Direction) -> impl Iterator<Item = &Link> {
     })
 }
 
-/// What moves in a direction.
+/// The coordinates of a direction.
 pub fn coordinates(direction: &Direction) -> impl Iterator<Item = &Coordinate> {
     direction.body.iter().filter_map(|statement| match statement {
         Statement::Coordinate(coordinate) => Some(coordinate),
@@ -186,7 +187,7 @@ pub fn coordinates(direction: &Direction) -> impl Iterator<Item = &Coordinate> {
     })
 }
 
-/// The block of a law that holds while a tyre rolls.
+/// The `rolling` block of a law.
 pub fn rolling(law: &[LawStatement]) -> Option<&Vec<LawStatement>> {
     law.iter().find_map(|statement| match statement {
         LawStatement::Rolling(_, body) => Some(body),
@@ -227,7 +228,7 @@ fn is_zero(e: &Expression) -> bool {
     matches!(&e.kind, ExpressionKind::Number(number) if number.value == 0.0)
 }
 
-/// An expression without the summands that are a name of zero; elsewhere the zero itself stands for the name.
+/// An expression without the summands that are a name of zero; elsewhere, zero replaces the name.
 fn without(e: &Expression, name: &str, zero: &Expression) -> Expression {
     let is_it = |e: &Expression| matches!(&e.kind, ExpressionKind::Name(own) if own.to_string() == name);
     if let ExpressionKind::Binary(operator @ (Operator::Add | Operator::Subtract), a, b) = &e.kind {

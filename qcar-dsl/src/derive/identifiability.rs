@@ -2,7 +2,7 @@
 //! any measurement. It is decided by the rank of the derivatives of all responses at pseudo-random points.
 
 // Values with their derivatives by parameters.
-mod seen;
+mod observable;
 // Identifiability of laws whose parameters need not change a slope.
 mod forces;
 // Responses of a model, with their derivatives by the parameters.
@@ -22,8 +22,8 @@ use crate::expr::{Expr, Graph, Symbol};
 use crate::model::{Model, Quantity, Signal, Term};
 
 use forces::Forces;
+use observable::Observable;
 use responses::Derived;
-use seen::Seen;
 
 /// Number of motions at which a nonlinear model is evaluated first, and if that leaves parameters undetermined: few
 /// motions reach each piece of a curve.
@@ -34,26 +34,26 @@ const MANY_MOTIONS: u64 = 64;
 const CLEARLY: f64 = 1e3;
 
 /// A parameter set, and the derivatives there: a row for each response, relative to the response and the parameter.
-struct Set {
+struct ParameterSet {
     parameters: Vec<f64>,
     rows: Vec<Vec<f64>>,
     scale: f64,
 }
 
 /// A model with its undetermined parameters and warnings about them; unchanged if they are known.
-pub fn look(model: Checked) -> Checked {
-    if model.is_looked_at() {
+pub fn with_identifiability(model: Checked) -> Checked {
+    if model.has_identifiability() {
         return model;
     }
     let mut graph = model.graph.clone();
     let motion = motion::derive(&model, &mut graph);
     let linear = linearise(&model, &motion, &mut graph);
-    look_at_derived(model, graph, &motion, &linear)
+    with_derived_identifiability(model, graph, &motion, &linear)
 }
 
 /// The same with given equations, and their graph.
-pub fn look_at_derived(model: Checked, graph: Graph, motion: &Motion, linear: &Linear) -> Checked {
-    if model.is_looked_at() {
+pub fn with_derived_identifiability(model: Checked, graph: Graph, motion: &Motion, linear: &Linear) -> Checked {
+    if model.has_identifiability() {
         return model;
     }
     let (unseen, warnings) = parameters_are_seen(&model, graph, motion, linear).into_iter().unzip();
@@ -89,7 +89,7 @@ fn parameters_are_seen(
     }
     // Parameters must be undetermined at all sets, since a law may be out of its range at one of them.
     let others = [(Kind::Plain, 2), (Kind::Declared, 3)].map(|(kind, seed)| set(kind, seed, MANY_MOTIONS, usize::MAX));
-    let sets: Vec<Set> = [first].into_iter().chain(others).collect();
+    let sets: Vec<ParameterSet> = [first].into_iter().chain(others).collect();
     let groups = hidden.iter().map(|change| support(std::slice::from_ref(change)));
     let groups = groups.filter(|group| sets.iter().all(|set| hidden_changes(set, group) > 0));
     let groups = merged(groups.collect());
@@ -136,12 +136,12 @@ fn constant_forces(model: &Model) -> BTreeSet<Symbol> {
 }
 
 /// True if rows determine all parameters with a wide margin, so that further rows are not needed.
-fn sees_all(some: &Set, parameters: usize) -> bool {
+fn sees_all(some: &ParameterSet, parameters: usize) -> bool {
     null_space_of_scale(some.rows.clone(), parameters, CLEARLY * some.scale).is_empty()
 }
 
 /// The rows of this number of motions; fewer if `enough` responses suffice.
-fn set(derived: &Derived, point: Point, motions: u64, enough: usize) -> Set {
+fn set(derived: &Derived, point: Point, motions: u64, enough: usize) -> ParameterSet {
     let parameters: Vec<f64> = derived
         .estimated
         .iter()
@@ -150,7 +150,7 @@ fn set(derived: &Derived, point: Point, motions: u64, enough: usize) -> Set {
     let rows: Vec<Vec<f64>> = derived
         .seen(point, motions, enough)
         .into_iter()
-        .flat_map(|Seen { value, gradient }| {
+        .flat_map(|Observable { value, gradient }| {
             let size = value.norm().max(f64::MIN_POSITIVE);
             let changes = || gradient.iter().zip(&parameters);
             let relative =
@@ -163,7 +163,7 @@ fn set(derived: &Derived, point: Point, motions: u64, enough: usize) -> Set {
         .iter()
         .flatten()
         .fold(0.0_f64, |scale, entry| scale.max(entry.abs()));
-    Set {
+    ParameterSet {
         parameters,
         rows,
         scale,
@@ -185,7 +185,7 @@ fn merged(groups: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
 }
 
 /// Number of independent changes of a group that the responses at a set do not show.
-fn hidden_changes(set: &Set, group: &[usize]) -> usize {
+fn hidden_changes(set: &ParameterSet, group: &[usize]) -> usize {
     let rows: Vec<Vec<f64>> = set
         .rows
         .iter()
@@ -194,7 +194,7 @@ fn hidden_changes(set: &Set, group: &[usize]) -> usize {
     null_space_of_scale(rows, group.len(), set.scale).len()
 }
 
-fn describe(model: &Model, estimated: &[u16], group: &[usize], sets: &[Set]) -> (Unseen, Diagnostic) {
+fn describe(model: &Model, estimated: &[u16], group: &[usize], sets: &[ParameterSet]) -> (Unseen, Diagnostic) {
     let parameter = |column: &usize| &model.parameters[usize::from(estimated[*column])];
     let named: Vec<_> = group
         .iter()
@@ -214,9 +214,9 @@ fn describe(model: &Model, estimated: &[u16], group: &[usize], sets: &[Set]) -> 
 }
 
 /// The combination of two parameters that is constant along the undetermined change, at every set.
-fn combination(group: &[usize], sets: &[Set], named: &[(crate::source::Span, &str)]) -> Option<String> {
+fn combination(group: &[usize], sets: &[ParameterSet], named: &[(crate::source::Span, &str)]) -> Option<String> {
     let [(_, a), (_, b)] = named else { return None };
-    let unseen = |set: &Set| {
+    let unseen = |set: &ParameterSet| {
         let rows = set
             .rows
             .iter()

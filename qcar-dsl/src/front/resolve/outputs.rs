@@ -2,32 +2,32 @@
 
 use super::declare::declared;
 use super::law::force_unit;
-use super::names::Thing;
-use super::{Known, Placed, Reported, Resolver};
+use super::names::DirectionName;
+use super::{Reported, Resolved, Resolver, StatementOfDirection};
 use crate::diagnostic::names;
 use crate::expr::CoordinateId;
 use crate::front::syntax::{Dotted, Name, Statement};
-use crate::model::{Channel, CoordinateKind, Declared, Output, Quantity, Reference, Signal};
+use crate::model::{Channel, CoordinateKind, Declaration, Output, Quantity, Reference, Signal};
 use crate::units::Unit;
 
 /// A signal with its unit and its full name, `z_body_acceleration`.
-struct Seen {
+struct ResolvedSignal {
     signal: Signal,
     unit: Unit,
     name: String,
 }
 
 /// What a channel is compared with.
-enum Below {
-    Signal(Seen),
+enum Denominator {
+    Signal(ResolvedSignal),
     Force(u16),
 }
 
-impl Below {
+impl Denominator {
     fn reference(&self) -> Reference {
         match self {
-            Below::Signal(seen) => Reference::Signal(seen.signal.clone()),
-            Below::Force(place) => Reference::Force(*place),
+            Denominator::Signal(seen) => Reference::Signal(seen.signal.clone()),
+            Denominator::Force(place) => Reference::Force(*place),
         }
     }
 }
@@ -40,7 +40,7 @@ const QUANTITIES: [(&str, Quantity); 3] = [
 
 impl Resolver<'_> {
     /// Declared outputs, or the acceleration of every mass and of every point that several coordinates move.
-    pub fn outputs(&mut self, placed: &[Placed]) {
+    pub fn outputs(&mut self, placed: &[StatementOfDirection]) {
         for (direction, statement) in placed {
             let Statement::Output(name, signal) = statement else {
                 continue;
@@ -54,7 +54,7 @@ impl Resolver<'_> {
                 text: name.as_ref().map_or(seen.name, |name| name.text.clone()),
                 span,
             };
-            let seen = Seen {
+            let seen = ResolvedSignal {
                 name: name.text.clone(),
                 ..seen
             };
@@ -65,7 +65,7 @@ impl Resolver<'_> {
         }
     }
 
-    fn add_output(&mut self, Seen { name, signal, unit }: Seen, declared: Declared) {
+    fn add_output(&mut self, ResolvedSignal { name, signal, unit }: ResolvedSignal, declared: Declaration) {
         if let Some(first) = self.model.outputs.iter().find(|output| output.name == name) {
             let mistake = names::duplicate_name(declared.span, first.declared.span, &name, "the outputs");
             self.report(mistake);
@@ -102,7 +102,7 @@ impl Resolver<'_> {
     }
 
     /// Ratios of signals.
-    pub fn channels(&mut self, placed: &[Placed]) {
+    pub fn channels(&mut self, placed: &[StatementOfDirection]) {
         for (direction, statement) in placed {
             let Statement::Channel(name, numerator, denominator) = statement else {
                 continue;
@@ -127,14 +127,14 @@ impl Resolver<'_> {
             };
             self.model.channels.push(channel);
             self.show(above, &declared);
-            if let Below::Signal(below) = below {
+            if let Denominator::Signal(below) = below {
                 self.show(below, &declared);
             }
         }
     }
 
     /// What a channel compares is an output, unless it is an input or follows from an output.
-    fn show(&mut self, seen: Seen, declared: &Declared) {
+    fn show(&mut self, seen: ResolvedSignal, declared: &Declaration) {
         let follows = |output: &Output| match (&output.signal, &seen.signal) {
             (Signal::Motion(known, _), Signal::Motion(wanted, _)) => known == wanted,
             (Signal::Point(known, _), Signal::Point(wanted, _)) => known == wanted,
@@ -151,26 +151,27 @@ impl Resolver<'_> {
     }
 
     /// A signal, or `f_wheel_z.force` for a force input.
-    fn reference(&mut self, path: &Dotted, direction: &str) -> Known<Below> {
+    fn reference(&mut self, path: &Dotted, direction: &str) -> Resolved<Denominator> {
         if let Some((quantity, owner)) = path.names.split_last()
             && quantity.text == "force"
-            && let Some((_, Thing::Force(place))) = self.names.find(&Dotted { names: owner.to_vec() }, direction)
+            && let Some((_, DirectionName::Force(place))) =
+                self.names.find(&Dotted { names: owner.to_vec() }, direction)
         {
-            return Ok(Below::Force(place));
+            return Ok(Denominator::Force(place));
         }
-        self.signal(path, direction).map(Below::Signal)
+        self.signal(path, direction).map(Denominator::Signal)
     }
 
     /// `body.acceleration`, or with its direction `z.body.acceleration`.
-    fn signal(&mut self, path: &Dotted, direction: &str) -> Known<Seen> {
+    fn signal(&mut self, path: &Dotted, direction: &str) -> Resolved<ResolvedSignal> {
         const EXAMPLE: &str = "body.acceleration` or `damper.force";
         let Some((quantity, owner)) = path.names.split_last().filter(|(_, owner)| !owner.is_empty()) else {
             let text = path.to_string();
             let mistake = names::wrong_kind(
                 path.span(),
                 &text,
-                "a name alone",
-                "something to see",
+                "a name without a quantity",
+                "a signal",
                 &format!("{text}.acceleration"),
             );
             return Err(self.report(mistake));
@@ -180,18 +181,18 @@ impl Resolver<'_> {
             self.unambiguous(&owner)?;
         }
         match self.names.find(&owner, direction) {
-            Some((_, Thing::Coordinate(coordinate))) => {
+            Some((_, DirectionName::Coordinate(coordinate))) => {
                 let moving = &self.model.coordinates[usize::from(coordinate.0)];
                 let (angle, name) = (moving.angle, format!("{}_{}", moving.direction.0, moving.name));
                 self.motion_signal(quantity, &owner, angle, &name, |q| Signal::Motion(coordinate, q))
             }
-            Some((_, Thing::Point(place))) => {
+            Some((_, DirectionName::Point(place))) => {
                 let point = &self.model.points[usize::from(place)];
                 let (angle, name) = (point.angle, format!("{}_{}", point.direction.0, point.name));
                 self.motion_signal(quantity, &owner, angle, &name, |q| Signal::Point(place, q))
             }
-            Some((_, Thing::Link(link))) => self.link_signal(link, quantity, &owner),
-            Some((_, Thing::Broken)) => Err(Reported),
+            Some((_, DirectionName::Link(link))) => self.link_signal(link, quantity, &owner),
+            Some((_, DirectionName::Broken)) => Err(Reported),
             _ => Err(self.no_thing(&owner, direction, "a point or link", EXAMPLE)),
         }
     }
@@ -203,29 +204,29 @@ impl Resolver<'_> {
         angle: bool,
         name: &str,
         signal: impl Fn(Quantity) -> Signal,
-    ) -> Known<Seen> {
+    ) -> Resolved<ResolvedSignal> {
         let Some((_, derivative)) = QUANTITIES.into_iter().find(|(name, _)| *name == quantity.text) else {
             let known = QUANTITIES.map(|(name, _)| name);
             let mistake = names::unknown_quantity(quantity.span, &quantity.text, &owner.to_string(), &known);
             return Err(self.report(mistake));
         };
-        Ok(Seen {
+        Ok(ResolvedSignal {
             signal: signal(derivative),
             unit: motion_unit(angle, derivative),
             name: format!("{name}_{}", quantity.text),
         })
     }
 
-    fn link_signal(&mut self, id: crate::expr::LinkId, quantity: &Name, owner: &Dotted) -> Known<Seen> {
+    fn link_signal(&mut self, id: crate::expr::LinkId, quantity: &Name, owner: &Dotted) -> Resolved<ResolvedSignal> {
         let link = &self.model.links[usize::from(id.0)];
         let name = format!("{}_{}_{}", link.direction.0, link.name, quantity.text);
         match quantity.text.as_str() {
-            "force" => Ok(Seen {
+            "force" => Ok(ResolvedSignal {
                 signal: Signal::LinkForce(id),
                 unit: force_unit(link.unit),
                 name,
             }),
-            "stretch" => Ok(Seen {
+            "stretch" => Ok(ResolvedSignal {
                 signal: Signal::LinkStretch(id),
                 unit: link.unit,
                 name,

@@ -1,5 +1,5 @@
 //! Force inputs on massless nodes: a node between springs follows a force immediately, and its velocity depends on the
-//! rate of the force, which is no input.
+//! rate of the force, which is not an input.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use crate::expr::{CoordinateId, LinkId, Symbol};
 use crate::model::{Link, Quantity, Signal};
 
 /// A force input for each node on which it acts, by its position in `Model::forces`.
-type Pushed = BTreeMap<CoordinateId, u16>;
+type ForcedNodes = BTreeMap<CoordinateId, u16>;
 
 /// Checks that no motion is needed that depends on the rate of a force input.
 pub fn rates_of_forces_are_not_needed(scratch: &Scratch) -> Vec<Diagnostic> {
@@ -35,33 +35,33 @@ pub fn rates_of_forces_are_not_needed(scratch: &Scratch) -> Vec<Diagnostic> {
     };
     let massless =
         |node: &CoordinateId| matches!(balances.get(node), Some(Some(Balance::Position | Balance::Velocity)));
-    pushed(scratch, massless).iter().filter_map(mistake).collect()
+    forced_nodes(scratch, massless).iter().filter_map(mistake).collect()
 }
 
 /// Nodes on which force inputs act directly, through a law, or through links between massless nodes.
-fn pushed(scratch: &Scratch, massless: impl Fn(&CoordinateId) -> bool) -> Pushed {
+fn forced_nodes(scratch: &Scratch, massless: impl Fn(&CoordinateId) -> bool) -> ForcedNodes {
     let model = scratch.model;
-    let mut pushed = Pushed::new();
+    let mut forced_nodes = ForcedNodes::new();
     for (force, input) in (0..).zip(&model.forces) {
         let own = input.on.iter().map(|(c, _)| *c);
-        pushed.extend(own.filter(&massless).map(|node| (node, force)));
+        forced_nodes.extend(own.filter(&massless).map(|node| (node, force)));
     }
     for link in &model.links {
         if let Some(&force) = link.law.force_inputs(&scratch.graph).first() {
-            pushed.extend(ends(link).filter(&massless).map(|node| (node, force)));
+            forced_nodes.extend(ends(link).filter(&massless).map(|node| (node, force)));
         }
     }
     loop {
-        let known = pushed.len();
+        let known = forced_nodes.len();
         for link in &model.links {
-            let force = ends(link).find_map(|end| pushed.get(&end).copied());
+            let force = ends(link).find_map(|end| forced_nodes.get(&end).copied());
             let Some(force) = force else { continue };
             for node in ends(link).filter(&massless) {
-                pushed.entry(node).or_insert(force);
+                forced_nodes.entry(node).or_insert(force);
             }
         }
-        if pushed.len() == known {
-            return pushed;
+        if forced_nodes.len() == known {
+            return forced_nodes;
         }
     }
 }
