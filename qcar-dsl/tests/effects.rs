@@ -209,6 +209,37 @@ fn the_catalogue_applies_where_it_should() {
     insta::assert_snapshot!(table);
 }
 
+/// What a search cannot find beside an effect: the effects, at their places, that the model allows and a model with the
+/// effect refuses. Each has a reason: it replaces a term that is gone, or it is the same effect again.
+#[test]
+fn what_each_effect_excludes() {
+    let base = model("axle_c");
+    let all = effects();
+    let fits = |model: &Checked| -> Vec<String> {
+        let candidates = all.iter().flat_map(|effect| effect.candidates(model, &|_| None));
+        let mut found: Vec<String> = candidates
+            .map(|own| format!("{} at {}", own.effect, own.place))
+            .collect();
+        found.dedup();
+        found
+    };
+    let alone = fits(&base);
+    let mut table = String::new();
+    for effect in &all {
+        for patched in effect.candidates(&base, &|_| None) {
+            let beside = fits(&patched.model);
+            let again = format!("{} at {}", patched.effect, patched.place);
+            let excluded = alone.iter().filter(|own| **own != again && !beside.contains(own));
+            let excluded: Vec<&str> = excluded.map(String::as_str).collect();
+            if !excluded.is_empty() {
+                let form = patched.form.map_or_else(String::new, |form| format!(" ({form})"));
+                table += &format!("{again}{form}\n    {}\n", excluded.join("\n    "));
+            }
+        }
+    }
+    insta::assert_snapshot!(table);
+}
+
 #[test]
 fn an_effect_is_tried_in_each_form_that_the_model_allows() {
     let friction = effect("coulomb_friction");
@@ -300,6 +331,28 @@ fn effects_go_by_what_the_parts_do_not_by_what_they_are_called() {
         // What an effect adds is refused only where the model has something of that name.
         found.retain(|(effect, _)| effect != "suspended_mass" && effect != "subframe");
         assert!(found.is_empty(), "{name}: {found:?}");
+    }
+}
+
+/// The part of a body above the other axle may be the heavier one.
+#[test]
+fn the_body_stays_that_of_its_wheel_beside_the_other_axle() {
+    let with_other = patched(&effect("apparent_mass"), &model("axle_c"), "body").model;
+    assert_eq!(effect("body_bending").places(&with_other), ["body"]);
+    assert_eq!(effect("drag_to_ground").places(&with_other), ["body", "wheel"]);
+}
+
+/// Whether a law is linear is decided at pseudo-random motions, of which all may be within its linear travel.
+#[test]
+fn a_dead_zone_is_seen_beside_any_effect() {
+    for (name, place) in [
+        ("tire_belt", "tire"),
+        ("secondary_resonator", "wheel"),
+        ("body_bending", "body"),
+    ] {
+        let with = patched(&effect(name), &model("axle_c"), place).model;
+        let both = patched(&effect("bushing_saturation"), &with, "wheel_bushing_x").model;
+        assert!(both.unseen().is_empty(), "{name}");
     }
 }
 

@@ -116,8 +116,8 @@ fn is_nonlinear(g: &mut Graph, e: Expr) -> bool {
         };
         Values::new(g, &leaf).of(change)
     };
-    // Includes small motions: all large ones, or none, may reach a stop.
-    let sizes = [1.0, 0.1, 0.01, 0.001];
+    // Small and large motions: all large ones may reach a stop, and small ones may all stay within a gap.
+    let sizes = [1.0, 0.1, 0.01, 0.001, 10.0, 100.0];
     let mut points = sizes.into_iter().flat_map(|size| (1..=4).map(move |seed| (seed, size)));
     points.any(|(seed, size)| {
         let (once, twice, back) = (value(seed, size), value(seed, 2.0 * size), value(seed, -size));

@@ -316,7 +316,7 @@ impl Patch {
             start::evaluate(base, &asked, values)?.into_iter().unzip();
         patching.declare_parameters(declared);
         let mut tree = patching.tree;
-        tidy::tidy(&mut tree);
+        tidy::tidy(&mut tree, base);
         self.rename(&mut tree, &place.label);
         // Removes what the patched model does not use.
         let used = |own: &NewParameter| {

@@ -9,7 +9,7 @@ use super::model_tree::{ModelTree, coordinates, links};
 use super::query::{Values, numbers};
 use super::rewrite::names_in;
 use super::stretch::{levered, lower, upper};
-use crate::front::syntax::{CoordinateKind, Direction, Dotted, Expression, Link};
+use crate::front::syntax::{CoordinateKind, Direction, Dotted, Expression, LawStatement, Link};
 
 /// The words for links, as `role tire` has them.
 pub const OF_LINKS: [&str; 6] = ["tire", "suspension", "mount", "hanger", "pivot_mount", "wheel_bushing"];
@@ -24,8 +24,9 @@ pub struct Roles {
     along: Option<String>,
     /// The mass on the tyre. If that is a belt, connected only to one heavier mass, the wheel is the heavier mass.
     wheel: Option<String>,
-    /// The heaviest mass of each direction except the wheel. Other directions take the mass of the same name, if there
-    /// is one.
+    /// The heaviest mass of each direction except the wheel. In the direction of the tyre, it is the heaviest that rests
+    /// on the wheel: the part of a body above the other axle is not. Other directions take the mass of the same name, if
+    /// there is one.
     body: BTreeMap<String, String>,
     /// The mass, other than the body, about which levers of the suspension turn.
     pivot: Option<String>,
@@ -48,18 +49,20 @@ impl Roles {
             let along = direction.name.text.clone();
             let on_tyre = upper(base, &along, tyre).map(|name| base.pointed_at(&along, &name));
             roles.along = Some(along.clone());
-            roles.body.extend(
-                masses
-                    .heaviest(&along, on_tyre.as_deref())
-                    .map(|body| (along.clone(), body)),
-            );
+            let rests = |mass: &str| {
+                let joined = |wheel: &String| reached(base, direction, wheel, &|link, _| !carries(link)).contains(mass);
+                on_tyre.as_ref().is_some_and(joined)
+            };
+            let heaviest = masses.heaviest(&along, on_tyre.as_deref(), &rests);
+            let body = heaviest.or_else(|| masses.heaviest(&along, on_tyre.as_deref(), &|_| true));
+            roles.body.extend(body.map(|body| (along.clone(), body)));
             roles.wheel = on_tyre.map(|mass| carried(base, direction, mass, &masses, roles.body.get(&along)));
         }
         for direction in base.directions() {
             let name = &direction.name.text;
             let own = roles.along.as_ref().and_then(|along| roles.body.get(along));
             let same = own.filter(|own| base.coordinate(name, own).is_some()).cloned();
-            let body = same.or_else(|| masses.heaviest(name, roles.wheel.as_deref()));
+            let body = same.or_else(|| masses.heaviest(name, roles.wheel.as_deref(), &|_| true));
             roles.body.extend(body.map(|body| (name.clone(), body)));
         }
         roles.pivot = roles.found_pivot(base);
@@ -199,12 +202,12 @@ impl Masses {
         Some(own.2)
     }
 
-    /// The heaviest mass of a direction, except `but`; of equal or unknown masses, the first.
-    fn heaviest(&self, direction: &str, but: Option<&str>) -> Option<String> {
+    /// The heaviest mass of a direction that `counts`, except `but`; of equal or unknown masses, the first.
+    fn heaviest(&self, direction: &str, but: Option<&str>, counts: &dyn Fn(&str) -> bool) -> Option<String> {
         let others = self
             .0
             .iter()
-            .filter(|(along, name, _)| along == direction && Some(name.as_str()) != but);
+            .filter(|(along, name, _)| along == direction && Some(name.as_str()) != but && counts(name));
         let heavier = |best: Option<&'_ (String, String, f64)>, own: &(String, String, f64)| {
             best.is_none_or(|best| own.2 > best.2 || best.2.is_nan() && !own.2.is_nan())
         };
@@ -288,6 +291,13 @@ fn own_point(base: &ModelTree, direction: &str, name: &Dotted) -> Option<String>
     };
     let meant = base.pointed_at(direction, &point.text);
     base.coordinate(direction, &meant).map(|_| meant)
+}
+
+/// True if a link can carry a static load: its law has more than inerters.
+fn carries(link: &Link) -> bool {
+    link.body
+        .iter()
+        .any(|statement| !matches!(statement, LawStatement::Inerter(_)))
 }
 
 fn is_tyre(direction: &Direction, link: &Link) -> bool {

@@ -6,13 +6,15 @@ use super::model_tree::ModelTree;
 use super::rewrite::names_in;
 use crate::front::syntax::{Dotted, Expression, ExpressionKind, ParameterDefault, Statement};
 
-/// Removes unused parameters, derived quantities and points, repeatedly until all are used.
-pub fn tidy(tree: &mut ModelTree) {
+/// Removes unused parameters, derived quantities and points, repeatedly until all are used. Points that were unused in
+/// `base` stay: effects find places by them.
+pub fn tidy(tree: &mut ModelTree, base: &ModelTree) {
+    let spare = unused_points(base);
     loop {
         let used = used(tree);
         let mut removed = 0;
         let mut keep = |statement: &Statement| {
-            let kept = is_used(statement, &used);
+            let kept = is_used(statement, &used) || is_point_among(statement, &spare);
             removed += usize::from(!kept);
             kept
         };
@@ -26,6 +28,21 @@ pub fn tidy(tree: &mut ModelTree) {
             return;
         }
     }
+}
+
+fn unused_points(base: &ModelTree) -> BTreeSet<String> {
+    let used = used(base);
+    let statements = base.directions().flat_map(|direction| &direction.body);
+    let unused = statements.filter(|statement| !is_used(statement, &used));
+    let point = |statement: &Statement| match statement {
+        Statement::Point(name, _) => Some(name.text.clone()),
+        _ => None,
+    };
+    unused.filter_map(point).collect()
+}
+
+fn is_point_among(statement: &Statement, names: &BTreeSet<String>) -> bool {
+    matches!(statement, Statement::Point(name, _) if names.contains(&name.text))
 }
 
 fn is_used(statement: &Statement, used: &BTreeSet<String>) -> bool {
