@@ -58,8 +58,7 @@ def ride_metrics(model: Model, design: Design, *, vehicle: Vehicle, **options: A
     -------
     columns
         Each (rows,), SI: the columns of the design; for each output ``peak_<output>`` and ``after_shake_<output>``;
-        ``static_deflection``;
-        ``lift_offs``, how often the tyre has left the ground. A row has the same bits as a single ride.
+        ``static_deflection``; ``lift_offs``, how often the tyre has left the ground. A row has the same bits as a single ride.
     """
     table = columns(design)
     rows = len(next(iter(table.values())))

@@ -104,8 +104,7 @@ class Model:
         ----------
         stage
             ``"model"``: its text with options resolved; ``"equations"`` of motion; ``"matrices"``: their nonzeros as formulas;
-            ``"latex"``: both as a
-            document; ``"rust"``: the generated module; ``"dot"``: masses and links as a graph for Graphviz.
+            ``"latex"``: both as a document; ``"rust"``: the generated module; ``"dot"``: masses and links as a graph for Graphviz.
         """
         how, *source = self._source
         name, text = (source[0], None) if how == "load" else (source[1], source[0])
