@@ -2,7 +2,7 @@
 
 use clap::Args;
 use clap_complete::engine::ArgValueCompleter;
-use qcar_dsl::difference::{Changed, Difference, difference};
+use qcar_dsl::difference::{Difference, LineChange, difference};
 use serde::Serialize;
 
 use crate::catalogue;
@@ -38,7 +38,7 @@ pub(crate) struct Change<'a> {
 }
 
 impl Change<'_> {
-    fn of(changed: &Changed) -> Change<'_> {
+    fn of(changed: &LineChange) -> Change<'_> {
         Change {
             name: &changed.name,
             before: changed.before.as_deref(),

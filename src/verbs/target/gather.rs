@@ -167,32 +167,12 @@ pub(super) fn gather(
     let intervals = |design: &[f64]| sure::intervals(subject, (ground, &axle), plan, design);
     let found = sure::design(&mut task, &axle, seed, plan.sure)?;
     let known = [found.design.clone()];
-    let front = wanted[0].then(|| {
-        let aims: Vec<(usize, Sense)> = plan.aims.iter().map(|aim| (aim.result, aim.sense)).collect();
-        let settings = FrontSettings {
-            seed,
-            generations: plan.generations,
-            ..FrontSettings::default()
-        };
-        while_counting("the front: generation".into(), |on_progress| {
-            front(&task, &aims, &known, settings, on_progress)
-        })
-    });
+    let front = wanted[0].then(|| search_front(&task, plan, &known, seed));
     let doubts = intervals(&found.design);
     let sureness = sure::sureness(subject, plan, &task, &axle, &found.design);
-    let space = if wanted[1] && found.met {
-        let mut task = task.clone();
-        sure::keep_away(&mut task, &axle, &found, plan.probability);
-        let settings = SpaceSettings {
-            probability: plan.probability,
-            seed,
-            ..SpaceSettings::default()
-        };
-        while_counting("the solution space: round".into(), |on_progress| {
-            space(&task, &known, settings, on_progress)
-        })
-    } else {
-        None
+    let space = match wanted[1] && found.met {
+        true => search_space(task.clone(), (&axle, &found), plan, &known, seed),
+        false => None,
     };
     let cuts = space.as_ref().map_or(Vec::new(), |space| {
         plan.cuts
@@ -222,6 +202,39 @@ pub(super) fn gather(
         elasticities: slopes.map_or(Vec::new(), |slopes| elasticities(plan, &slopes, &found)),
         front: front.map(|front| front_answer(plan, &found, front)),
         space: space.map(|space| space_answer(plan, &space, cuts)),
+    })
+}
+
+/// The Pareto front of the plan's aims, with progress in a terminal.
+fn search_front(task: &Task<'_>, plan: &Plan, known: &[Vec<f64>], seed: u64) -> Front {
+    let aims: Vec<(usize, Sense)> = plan.aims.iter().map(|aim| (aim.result, aim.sense)).collect();
+    let settings = FrontSettings {
+        seed,
+        generations: plan.generations,
+        ..FrontSettings::default()
+    };
+    while_counting("the front: generation".into(), |on_progress| {
+        front(task, &aims, known, settings, on_progress)
+    })
+}
+
+/// The solution space, whose limits have margins for the plan's probability, with progress in a terminal. `None` if no
+/// box is found.
+fn search_space(
+    mut task: Task<'_>,
+    (axle, found): (&Axle<'_>, &Found),
+    plan: &Plan,
+    known: &[Vec<f64>],
+    seed: u64,
+) -> Option<Space> {
+    sure::keep_away(&mut task, axle, found, plan.probability);
+    let settings = SpaceSettings {
+        probability: plan.probability,
+        seed,
+        ..SpaceSettings::default()
+    };
+    while_counting("the solution space: round".into(), |on_progress| {
+        space(&task, known, settings, on_progress)
     })
 }
 
