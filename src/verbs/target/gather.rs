@@ -9,10 +9,10 @@ use qcar_runtime::target::{
 use serde::Serialize;
 
 use super::plan::Plan;
-use super::sure::{self, Sureness};
+use super::sure::{self, DesignUncertainty};
 use crate::json::Ordered;
 use crate::progress::while_counting;
-use crate::verbs::sensitivity::gather::{Doubted, doubted, rounded};
+use crate::verbs::sensitivity::gather::{UncertainMetric, doubted, rounded};
 use crate::verbs::sensitivity::subject::Subject;
 
 /// The result.
@@ -36,7 +36,7 @@ pub(super) struct Answer {
     pub elasticities: Vec<Vec<f64>>,
     pub front: Option<FrontAnswer>,
     pub space: Option<SpaceAnswer>,
-    pub uncertainty: Option<Sureness>,
+    pub uncertainty: Option<DesignUncertainty>,
 }
 
 /// A parameter that may change.
@@ -74,7 +74,7 @@ pub(super) struct Target {
     /// target in the conflict.
     pub multiplier: f64,
     /// Uncertainty of the design's value, if parameters are uncertain.
-    pub doubt: Option<Doubted>,
+    pub doubt: Option<UncertainMetric>,
     /// Share of draws in which the design meets the target.
     pub holds: Option<f64>,
     /// Share of the designs in the solution space that meet it.
@@ -318,7 +318,7 @@ fn targets(
     task: &Task<'_>,
     found: &Found,
     space: Option<&Space>,
-    sure: Option<(&Sureness, Vec<Interval>)>,
+    sure: Option<(&DesignUncertainty, Vec<Interval>)>,
 ) -> Vec<Target> {
     let places = plan.doubts.places(subject);
     let names: Vec<String> = places
