@@ -7,7 +7,9 @@ use divan::Bencher;
 use models::axle_d::AxleD;
 use qcar_runtime::model::Model;
 use qcar_runtime::progress::NO_PROGRESS;
-use qcar_runtime::simulate::{Car, Kept, Ridden, Settings, Standard, end_of_ride, ride, rides, rides_abreast};
+use qcar_runtime::simulate::{
+    Car, RecordedSignals, RideCase, Settings, Standard, end_of_ride, ride, rides, rides_abreast,
+};
 
 fn main() {
     divan::main();
@@ -78,11 +80,11 @@ fn ninety_six_rides_abreast(bencher: Bencher<'_, '_>) {
     let own = parameters();
     let car = car(&own);
     let of_set = |set| all.iter().map(move |standard| (set, standard.drive()));
-    let rides: Vec<Ridden<'_>> = sets.iter().flat_map(|set| of_set(set.as_slice())).collect();
-    let kept = Kept {
+    let rides: Vec<RideCase<'_>> = sets.iter().flat_map(|set| of_set(set.as_slice())).collect();
+    let kept = RecordedSignals {
         force: false,
         area: false,
-        ..Kept::all(AxleD.about())
+        ..RecordedSignals::all(AxleD.about())
     };
     bencher.bench_local(|| {
         rides_abreast(&car, &rides, &Settings::default(), &kept, |_, ride| {

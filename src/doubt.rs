@@ -8,14 +8,14 @@ const ABOUT_ONE: f64 = 0.05;
 const TRAVEL: f64 = 1.0;
 
 /// Statistics of a channel, in its unit.
-pub(crate) struct Does {
+pub(crate) struct Statistics {
     pub mean: f64,
     pub min: f64,
     pub max: f64,
 }
 
 /// Doubt about a unit from these statistics; `None` if it may be right.
-pub(crate) fn doubt(unit: &str, does: Option<Does>) -> Option<String> {
+pub(crate) fn doubt(unit: &str, does: Option<Statistics>) -> Option<String> {
     if unit.is_empty() {
         return None;
     }
@@ -26,7 +26,7 @@ pub(crate) fn doubt(unit: &str, does: Option<Does>) -> Option<String> {
     }
     let si = in_si(unit)?;
     let is_plain = si.multiply == si.divide;
-    let Does {
+    let Statistics {
         mean,
         min: low,
         max: high,

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 /// Residual of one sensor in one kind of run, on the held-out runs, or on the fitted runs if none is held out.
 #[derive(Serialize)]
-pub(crate) struct Left {
+pub(crate) struct SensorResidual {
     /// The sensor.
     pub channel: String,
     /// Kind of its values.
@@ -39,7 +39,7 @@ impl BeforeAfter {
 
 /// Residuals of every sensor in every kind of run: on the held-out runs, or on the fitted runs if none is held out.
 /// Higher harmonics are left out, because they are small.
-pub(crate) fn left(evidence: &Evidence, [before, after]: [&Explanation; 2]) -> Vec<Left> {
+pub(crate) fn left(evidence: &Evidence, [before, after]: [&Explanation; 2]) -> Vec<SensorResidual> {
     let role = match evidence.of_role(Role::HeldOut).next() {
         Some(_) => Role::HeldOut,
         None => Role::Fit,
@@ -71,7 +71,7 @@ pub(crate) fn left(evidence: &Evidence, [before, after]: [&Explanation; 2]) -> V
         }
         100.0 * (missed / measured).sqrt()
     };
-    let left = |group: (&Point, Kind)| Left {
+    let left = |group: (&Point, Kind)| SensorResidual {
         channel: channel(group.0),
         kind: word(group.1),
         before_percent: percent(group, before),

@@ -124,7 +124,7 @@ pub fn resolve_both<'a>(
 }
 
 /// Contents of a parameter file besides the values.
-pub struct Beside {
+pub struct FileExtras {
     /// Name of the model to which they were fitted.
     pub model: Option<String>,
     /// Standard errors, if the file has them.
@@ -135,7 +135,7 @@ pub struct Beside {
     pub vehicle: BTreeMap<String, f64>,
 }
 
-impl Beside {
+impl FileExtras {
     /// Reads a parameter file.
     ///
     /// # Errors
@@ -144,7 +144,7 @@ impl Beside {
         let file = read(path)?;
         let errors = file.parameters.iter();
         let answer = is_answer(path).then(|| Answer::read(path)).transpose()?;
-        Ok(Beside {
+        Ok(FileExtras {
             correlations: answer.as_ref().map_or(Vec::new(), Answer::correlations),
             model: answer.map(|answer| answer.model),
             errors: errors

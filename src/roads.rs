@@ -12,7 +12,7 @@ use crate::failure::flag;
 
 /// A random road of ISO 8608 or a measured profile, with speed and duration.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Asked {
+pub struct RequestedRoad {
     ground: Ground,
     /// Speed, m/s.
     speed: f64,
@@ -56,7 +56,7 @@ const SAMPLED: &str = "give a road that is sampled finely enough and long enough
 /// Longest ride, s: a road of ISO 8608 is a sum of sines, and a record is kept in memory.
 const LONGEST: f64 = 600.0;
 
-impl FromStr for Asked {
+impl FromStr for RequestedRoad {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -109,7 +109,7 @@ impl Ground {
     }
 }
 
-impl Asked {
+impl RequestedRoad {
     /// The same in a file: the path of the profile is relative to the folder of that file.
     #[must_use]
     pub fn asked_in(mut self, file: &Path) -> Self {
@@ -168,8 +168,8 @@ impl Asked {
 /// The roads, each with a name that differs from all others and from the courses `beside` them.
 ///
 /// # Errors
-/// Fails as [`Asked::course`] does, or if two have one name.
-pub fn courses(roads: &[Asked], beside: &[Course]) -> Result<Vec<Course>, InputError> {
+/// Fails as [`RequestedRoad::course`] does, or if two have one name.
+pub fn courses(roads: &[RequestedRoad], beside: &[Course]) -> Result<Vec<Course>, InputError> {
     let mut courses: Vec<Course> = Vec::new();
     for road in roads {
         let course = road.course()?;
@@ -197,11 +197,11 @@ fn plain(name: &str) -> String {
 mod tests {
     use qcar_runtime::road::Class;
 
-    use super::{Asked, Ground};
+    use super::{Ground, RequestedRoad};
 
     #[test]
     fn a_road_is_named_in_one_word() {
-        let of = |text: &str| text.parse::<Asked>();
+        let of = |text: &str| text.parse::<RequestedRoad>();
         let measured = |file: &str, channel: Option<&str>| Ground::Measured(file.into(), channel.map(String::from));
         for (text, ground, speed, duration) in [
             ("C@36km/h", Ground::Random(Class::C, 1), 10.0, None),

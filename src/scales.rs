@@ -25,7 +25,7 @@ use qcar_runtime::transmissibility::Point;
 const BANDS_PER_OCTAVE: f64 = 3.0;
 
 /// Excitation of a run, as amplitudes of a sensor at frequencies (Hz).
-struct Driven<'a> {
+struct RunExcitation<'a> {
     reference: &'a Point,
     frequency: Vec<f64>,
     amplitude: Vec<f64>,
@@ -64,14 +64,14 @@ fn raise(found: &mut BTreeMap<String, f64>, name: String, amplitude: f64) {
     }
 }
 
-fn driven(run: &Run) -> Vec<Driven<'_>> {
+fn driven(run: &Run) -> Vec<RunExcitation<'_>> {
     match &run.stimulus {
         Stimulus::Sweep {
             reference,
             frequency,
             amplitude,
             ..
-        } => vec![Driven {
+        } => vec![RunExcitation {
             reference,
             frequency: frequency.clone(),
             amplitude: amplitude.clone(),
@@ -88,7 +88,7 @@ fn driven(run: &Run) -> Vec<Driven<'_>> {
 }
 
 /// Amplitude of a record in each frequency band.
-fn recorded<'a>(reference: &'a Point, samples: &[f64], rate: f64) -> Driven<'a> {
+fn recorded<'a>(reference: &'a Point, samples: &[f64], rate: f64) -> RunExcitation<'a> {
     let lines = transform(samples);
     let (length, spacing) = (samples.len() as f64, rate / samples.len() as f64);
     let mut bands: BTreeMap<i64, f64> = BTreeMap::new();
@@ -96,7 +96,7 @@ fn recorded<'a>(reference: &'a Point, samples: &[f64], rate: f64) -> Driven<'a> 
         let band = ((k as f64 * spacing).log2() * BANDS_PER_OCTAVE).round() as i64;
         *bands.entry(band).or_default() += (2.0 * line.norm() / length).powi(2);
     }
-    Driven {
+    RunExcitation {
         reference,
         frequency: bands
             .keys()
@@ -132,7 +132,7 @@ fn orders(kind: SignalKind) -> &'static [(Scale, i32)] {
     }
 }
 
-fn amplitudes(model: &Evaluator, values: &Values, driven: &Driven, signal: &Signal) -> Vec<(String, f64)> {
+fn amplitudes(model: &Evaluator, values: &Values, driven: &RunExcitation, signal: &Signal) -> Vec<(String, f64)> {
     let about = model.about();
     let Some(excitation) = excitation(about, driven.reference) else {
         return vec![];

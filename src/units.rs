@@ -11,11 +11,11 @@ const ENGINEERING: [&str; 5] = ["N/mm", "N s/mm", "mm", "mm/s", "g"];
 
 /// A unit for each kind of quantity that is not shown in SI.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Units(Vec<Shown>);
+pub struct Units(Vec<ShownUnit>);
 
 /// A shown unit, and its value in SI.
 #[derive(Clone, Debug, PartialEq)]
-struct Shown {
+struct ShownUnit {
     name: String,
     declared: Declared,
 }
@@ -45,7 +45,7 @@ impl Units {
                     twice.name
                 ));
             }
-            units.0.push(Shown {
+            units.0.push(ShownUnit {
                 name: name.into(),
                 declared,
             });
@@ -53,7 +53,7 @@ impl Units {
         Ok(units)
     }
 
-    fn of_kind(&self, si: &str) -> Option<&Shown> {
+    fn of_kind(&self, si: &str) -> Option<&ShownUnit> {
         self.0.iter().find(|own| own.declared.is_like(si))
     }
 
@@ -62,7 +62,7 @@ impl Units {
         if self.0.is_empty() {
             return "view.units = 'si';".into();
         }
-        let scale = |own: &Shown| {
+        let scale = |own: &ShownUnit| {
             (
                 own.declared.coherent.clone(),
                 json!([own.declared.shown(1.0), own.name]),

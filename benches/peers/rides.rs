@@ -3,7 +3,9 @@
 use models::axle_d::AxleD;
 use qcar_runtime::model::{LANES, Model, StateKind};
 use qcar_runtime::road::Road;
-use qcar_runtime::simulate::{AntiAlias, Drive, Kept, Method, Ridden, Settings, end_of_ride, rides_abreast};
+use qcar_runtime::simulate::{
+    AntiAlias, Drive, Method, RecordedSignals, RideCase, Settings, end_of_ride, rides_abreast,
+};
 
 use crate::child::Peer;
 use crate::cleat;
@@ -85,14 +87,14 @@ pub fn abreast<M: Model + ?Sized>(model: &M) -> impl FnMut() {
             own
         })
         .collect();
-    let kept = Kept {
+    let kept = RecordedSignals {
         outputs: vec![false; model.about().outputs.len()],
         force: false,
         area: false,
     };
     move || {
         let car = cleat::on_tyre(model, &parameters);
-        let rides: Vec<Ridden> = sets.iter().map(|own| (own.as_slice(), drive(&road, SAMPLES))).collect();
+        let rides: Vec<RideCase> = sets.iter().map(|own| (own.as_slice(), drive(&road, SAMPLES))).collect();
         let done = |_, ride: Result<_, _>| drop(std::hint::black_box(ride.expect("it rides")));
         rides_abreast(&car, &rides, &Settings::default(), &kept, done);
     }

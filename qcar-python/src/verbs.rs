@@ -8,7 +8,7 @@ use numpy::{Complex64, IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 use qcar::catalogue;
 use qcar::failure::Failure;
-use qcar::parameters::{self, Beside, Setting};
+use qcar::parameters::{self, FileExtras, Setting};
 use qcar::verbs::{discover, fit, simulate};
 use qcar_runtime::campaign::{Campaign, Role};
 use qcar_runtime::discover::numbers::Numbers;
@@ -162,7 +162,7 @@ pub fn discover_in_campaign(py: Python<'_>, campaign: PathBuf, model: Option<Str
 #[pyfunction]
 pub fn read_values(path: PathBuf) -> PyResult<(BTreeMap<String, f64>, BTreeMap<String, f64>)> {
     let read = |path: &Path| -> Result<_, Failure> {
-        let (beside, all) = (Beside::read(path)?, parameters::given(Some(path), &[])?);
+        let (beside, all) = (FileExtras::read(path)?, parameters::given(Some(path), &[])?);
         Ok((all, beside.vehicle))
     };
     read(&path).map_err(errors::of_campaign)

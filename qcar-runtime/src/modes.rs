@@ -80,7 +80,7 @@ fn damping(root: Complex<f64>) -> f64 {
 pub fn pairs(first: &[Mode], second: &[Mode]) -> Vec<(usize, usize)> {
     let mut points = BTreeMap::new();
     let [one, other] = [first, second].map(|modes| {
-        let moved = modes.iter().map(|mode| Moved::of(mode, &mut points));
+        let moved = modes.iter().map(|mode| IndexedShape::of(mode, &mut points));
         moved.collect::<Vec<_>>()
     });
     let all = (0..first.len()).flat_map(|a| (0..second.len()).map(move |b| (a, b)));
@@ -97,12 +97,12 @@ pub fn pairs(first: &[Mode], second: &[Mode]) -> Vec<(usize, usize)> {
 }
 
 /// The shape of a mode by the numbers of its points, so that shapes are compared without comparing names.
-struct Moved {
+struct IndexedShape {
     shape: Vec<(usize, Complex<f64>)>,
     by_point: Vec<Option<Complex<f64>>>,
 }
 
-impl Moved {
+impl IndexedShape {
     /// Of a mode; a point that is not in `points` gets the next number.
     fn of<'m>(mode: &'m Mode, points: &mut BTreeMap<(&'m str, &'m str), usize>) -> Self {
         let (mut shape, mut by_point) = (Vec::new(), Vec::new());
@@ -117,7 +117,7 @@ impl Moved {
             by_point[point] = Some(part.amplitude);
             shape.push((point, part.amplitude));
         }
-        Moved { shape, by_point }
+        IndexedShape { shape, by_point }
     }
 
     fn at(&self, point: usize) -> Option<Complex<f64>> {
@@ -128,8 +128,8 @@ impl Moved {
 /// The modal assurance criterion `|a·b|² / (|a|² |b|²)` over the points that both models have (Allemang, "The Modal
 /// Assurance Criterion", Sound and Vibration 37 (2003)), times the share of these points in both modes: a mode of
 /// points that only one model has resembles none of the other.
-fn likeness(first: &Moved, second: &Moved) -> f64 {
-    let square = |of: &Moved, among: &Moved| {
+fn likeness(first: &IndexedShape, second: &IndexedShape) -> f64 {
+    let square = |of: &IndexedShape, among: &IndexedShape| {
         let common = of.shape.iter().filter(|(point, _)| among.at(*point).is_some());
         common.map(|(_, amplitude)| amplitude.norm_sqr()).sum::<f64>()
     };

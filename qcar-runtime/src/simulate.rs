@@ -39,11 +39,11 @@ mod standard;
 // A model driven by records.
 pub mod replay;
 
-pub use abreast::{Ridden, rides_abreast};
+pub use abreast::{RideCase, rides_abreast};
 pub use car::{Car, Variant};
 pub use cleat::{Cleat, tyre, tyre_of};
 pub use failure::SimulateError;
-pub use recorder::Kept;
+pub use recorder::RecordedSignals;
 pub use replay::{Between, Reading, Recorded, Replay, replay};
 pub use ride::{Drive, Ride, end_of_ride, ride, rides};
 pub use sampling::AntiAlias;

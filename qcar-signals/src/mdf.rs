@@ -210,24 +210,53 @@ fn add_group(
     records: &Records,
     wanted: &Wanted,
 ) -> Read<()> {
+    check_overlap(group, &channels, records)?;
+    let Columns { samples, times } = read_columns(group, &channels, records, wanted)?;
+    match time_base(&channels, times) {
+        Ok(time) => add_signals(recording, group, channels.into_iter().zip(samples), &time),
+        Err((place, why)) => {
+            for channel in channels.iter().filter(|channel| channel.role == Role::Values) {
+                recording.pass_over(&channel.name, place.clone(), format!("its times: {why}"));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// # Errors
+/// Channels with more bits in total than [`MOST_USES`] times those of a record.
+fn check_overlap(group: &str, channels: &[Channel], records: &Records) -> Read<()> {
     let used: usize = channels
         .iter()
         .filter_map(|channel| Some(channel.field.as_ref().ok()?.bits()))
         .sum();
-    if let Some(first) = channels
+    let Some(first) = channels
         .first()
         .filter(|_| used > MOST_USES * 8 * records.stride && records.count > 0)
-    {
-        let found = format!(
-            "channels of the group `{group}` with {used} bits in records of {} bytes",
-            records.stride
-        );
-        return Err(Fault::damaged(
-            first.place.clone(),
-            found,
-            "channels that lie beside each other",
-        ));
-    }
+    else {
+        return Ok(());
+    };
+    let found = format!(
+        "channels of the group `{group}` with {used} bits in records of {} bytes",
+        records.stride
+    );
+    Err(Fault::damaged(
+        first.place.clone(),
+        found,
+        "channels that do not overlap",
+    ))
+}
+
+/// The values of a group's channels.
+struct Columns {
+    /// Samples of each channel.
+    samples: Vec<Samples>,
+    /// Stored values of each channel of times; `None` if no channel of the group is wanted.
+    times: Option<Vec<Vec<f64>>>,
+}
+
+/// Reads the wanted channels of a group.
+fn read_columns(group: &str, channels: &[Channel], records: &Records, wanted: &Wanted) -> Read<Columns> {
     let summarise = matches!(wanted, Wanted::Summaries);
     let is_wanted = |channel: &Channel| channel.role == Role::Values && (summarise || wanted.has(group, &channel.name));
     let is_any = channels.iter().any(is_wanted);
@@ -246,37 +275,46 @@ fn add_group(
         }
     }
     records.fill(&mut columns)?;
-    let mut of_each: Vec<Samples> = channels.iter().map(|_| Samples::default()).collect();
+    let mut samples: Vec<Samples> = channels.iter().map(|_| Samples::default()).collect();
     let mut stored_times = vec![Vec::new(); channels.len()];
     for (place, (_, column)) in places.into_iter().zip(columns) {
         let channel = &channels[place];
         match (column, &channel.conversion) {
-            (Column::Summarised(_, summary, _), _) => of_each[place] = Samples::summarised(summary),
+            (Column::Summarised(_, summary, _), _) => samples[place] = Samples::summarised(summary),
             (Column::Kept(values), Ok(conversion)) if channel.role == Role::Values => {
                 let mut values = values;
                 conversion.apply(&mut values);
-                of_each[place] = values.into();
+                samples[place] = values.into();
             }
             (Column::Kept(values), _) => stored_times[place] = values,
         }
     }
+    Ok(Columns {
+        samples,
+        times: is_any.then_some(stored_times),
+    })
+}
+
+/// The time base of a group from its channel of times; unknown if no channel is wanted. Fails with the place of the
+/// channel of times and the reason.
+fn time_base(channels: &[Channel], stored_times: Option<Vec<Vec<f64>>>) -> Result<TimeBase, (Place, String)> {
     let mut time = TimeBase::Unknown;
-    for (master, stored) in channels.iter().zip(stored_times) {
-        if master.role != Role::Time || !is_any {
-            continue;
-        }
-        match times(master, stored) {
-            Ok(base) => time = base,
-            Err(why) => {
-                let all = channels.iter().filter(|channel| channel.role == Role::Values);
-                for channel in all {
-                    recording.pass_over(&channel.name, master.place.clone(), format!("its times: {why}"));
-                }
-                return Ok(());
-            }
+    for (master, stored) in channels.iter().zip(stored_times.unwrap_or_default()) {
+        if master.role == Role::Time {
+            time = times(master, stored).map_err(|why| (master.place.clone(), why))?;
         }
     }
-    for (channel, samples) in channels.into_iter().zip(of_each) {
+    Ok(time)
+}
+
+/// Adds the channels of values with their samples to a recording, and the reasons why others cannot be read.
+fn add_signals(
+    recording: &mut Recording,
+    group: &str,
+    channels: impl Iterator<Item = (Channel, Samples)>,
+    time: &TimeBase,
+) {
+    for (channel, samples) in channels {
         match (channel.role, &channel.field, &channel.conversion) {
             (Role::Time, ..) => {}
             (Role::Values, Ok(_), Ok(conversion)) => {
@@ -297,7 +335,6 @@ fn add_group(
             }
         }
     }
-    Ok(())
 }
 
 impl Channel {

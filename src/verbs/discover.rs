@@ -84,7 +84,7 @@ pub struct Answer {
     /// Units of the parameters of each finding.
     pub units: Vec<BTreeMap<String, String>>,
     /// The model with the findings; `None` if none of them changes the model.
-    pub(crate) model: Option<Written>,
+    pub(crate) model: Option<ExtendedModel>,
     /// The learned laws and the model with them; `None` without any.
     pub(crate) learned: Option<law::LearnedModel>,
     /// Duration of the search, s.
@@ -120,7 +120,7 @@ impl Answer {
 }
 
 /// A model with effects.
-pub(crate) struct Written {
+pub(crate) struct ExtendedModel {
     /// Its name.
     pub name: String,
     /// Text of the model file.
@@ -129,7 +129,7 @@ pub(crate) struct Written {
     pub file: Option<PathBuf>,
 }
 
-impl Written {
+impl ExtendedModel {
     /// Writes the model file and stores its path.
     fn write(&mut self, folder: &Path) -> Result<(), Failure> {
         let name = format!("{}.axle", self.name);
@@ -284,7 +284,7 @@ fn units(mut bench: Bench, discovery: &Discovery) -> Vec<BTreeMap<String, String
 }
 
 /// The model with the findings; `None` unless the verdict is `Found`.
-fn found(bench: Bench, discovery: &Discovery) -> Option<Written> {
+fn found(bench: Bench, discovery: &Discovery) -> Option<ExtendedModel> {
     let (before, after) = (&discovery.before.misfit, &discovery.after.misfit);
     let evidence = format!(
         "Evidence: the RMS residual of held-out runs fell from {:.2} to {:.2} standard deviations.",
@@ -297,7 +297,7 @@ fn found(bench: Bench, discovery: &Discovery) -> Option<Written> {
 }
 
 /// The model with effects and a sentence on their evidence; `None` if none of them changes the model.
-fn patched(mut bench: Bench, findings: &[Finding], why: &str) -> Option<Written> {
+fn patched(mut bench: Bench, findings: &[Finding], why: &str) -> Option<ExtendedModel> {
     let mut written = None;
     for finding in findings {
         let patched = extended(&bench, finding)?;
@@ -307,7 +307,7 @@ fn patched(mut bench: Bench, findings: &[Finding], why: &str) -> Option<Written>
         let text = patched.text(why);
         bench = bench.holding(patched.model);
         let name = bench.checked().name.clone();
-        written = Some(Written { name, text, file: None });
+        written = Some(ExtendedModel { name, text, file: None });
     }
     written
 }

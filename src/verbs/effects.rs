@@ -14,7 +14,7 @@ use crate::json;
 use crate::table::Table;
 use crate::terminal::prose;
 use crate::verbs::Format;
-use described::Described;
+use described::EffectDescription;
 
 /// List the effects that a model may lack, and where each applies
 ///
@@ -39,7 +39,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     };
     match effects::of_name(name) {
         Some(effect) => {
-            let described = Described::of(&effect?);
+            let described = EffectDescription::of(&effect?);
             Ok(match arguments.format {
                 Format::Text => prose(&described.text()),
                 Format::Json => json::line(&described),
@@ -52,7 +52,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
 fn catalogue(format: Format) -> Result<String, Failure> {
     let all = effects::all()?;
     if let Format::Json = format {
-        return Ok(json::line(&all.iter().map(Described::of).collect::<Vec<_>>()));
+        return Ok(json::line(&all.iter().map(EffectDescription::of).collect::<Vec<_>>()));
     }
     let mut table = Table::new(["effect", "what it is", "how it shows"]);
     for patch in all {

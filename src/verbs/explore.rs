@@ -12,7 +12,7 @@ use qcar_runtime::simulate::{Variant, tyre_of};
 
 use crate::catalogue::{self, Loaded};
 use crate::failure::{Failure, flag};
-use crate::parameters::{self, Beside};
+use crate::parameters::{self, FileExtras};
 use crate::table::number;
 use crate::verbs::{ModelArguments, each_once, frf};
 
@@ -36,7 +36,7 @@ mod ledger;
 mod filled;
 
 use ledger::Choice;
-use over::Over;
+use over::RideName;
 use part::Part;
 use vary::Vary;
 
@@ -66,7 +66,7 @@ pub struct Arguments {
     posterior: Option<PathBuf>,
     /// How the sets are chosen [default: sobol, or posterior with --posterior]
     #[arg(long, value_enum)]
-    design: Option<Chosen>,
+    design: Option<DesignKind>,
     /// Number of sets; for a grid, number of values of each parameter
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     count: u64,
@@ -75,7 +75,7 @@ pub struct Arguments {
     seed: u64,
     /// Cleats to drive over: `standard` (three speeds, four heights), or HEIGHT@SPEED such as 20mm@30km/h
     #[arg(long, value_delimiter = ',', value_name = "RIDES")]
-    rides: Vec<Over>,
+    rides: Vec<RideName>,
     /// The metrics to compute [default: peak, after-shake and vdv of rides; without rides transmissibility and modes]
     #[arg(long, value_enum, value_delimiter = ',', value_name = "NAMES")]
     metrics: Vec<Metric>,
@@ -92,7 +92,7 @@ pub struct Arguments {
 
 /// The designs by name.
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
-enum Chosen {
+enum DesignKind {
     /// Every combination of equally spaced values
     Grid,
     /// A Latin hypercube: as many intervals as sets, and each parameter has one value in each interval
@@ -169,21 +169,21 @@ fn check_same_model(arguments: &Arguments, about: &About, fitted: Option<&str>) 
     }
 }
 
-fn scheme(arguments: &Arguments) -> Chosen {
+fn scheme(arguments: &Arguments) -> DesignKind {
     let usual = match arguments.posterior {
-        Some(_) => Chosen::Posterior,
-        None => Chosen::Sobol,
+        Some(_) => DesignKind::Posterior,
+        None => DesignKind::Sobol,
     };
     arguments.design.unwrap_or(usual)
 }
 
-impl Chosen {
+impl DesignKind {
     fn name(self) -> &'static str {
         match self {
-            Chosen::Grid => "grid",
-            Chosen::Lhs => "lhs",
-            Chosen::Sobol => "sobol",
-            Chosen::Posterior => "posterior",
+            DesignKind::Grid => "grid",
+            DesignKind::Lhs => "lhs",
+            DesignKind::Sobol => "sobol",
+            DesignKind::Posterior => "posterior",
         }
     }
 }
@@ -203,8 +203,8 @@ fn design(
         None => vary::axes(about, values, &arguments.vary)?,
     };
     let scheme = match (scheme(arguments), posterior) {
-        (Chosen::Posterior, Some(posterior)) => Scheme::Posterior(count, posterior),
-        (Chosen::Posterior, None) => {
+        (DesignKind::Posterior, Some(posterior)) => Scheme::Posterior(count, posterior),
+        (DesignKind::Posterior, None) => {
             let remedy = "add --posterior with the fit.json of `qcar fit --out`";
             return Err(flag("--design", "`posterior` without a fit", "a fit to draw from", remedy).into());
         }
@@ -218,9 +218,9 @@ fn design(
             )
             .into());
         }
-        (Chosen::Grid, None) => Scheme::Grid(count),
-        (Chosen::Lhs, None) => Scheme::LatinHypercube(count),
-        (Chosen::Sobol, None) => Scheme::Sobol(count),
+        (DesignKind::Grid, None) => Scheme::Grid(count),
+        (DesignKind::Lhs, None) => Scheme::LatinHypercube(count),
+        (DesignKind::Sobol, None) => Scheme::Sobol(count),
     };
     check_size(&scheme, axes.len())?;
     Ok(Design::new(axes, scheme, arguments.seed))
@@ -286,7 +286,7 @@ fn track(arguments: &Arguments) -> Result<Option<Track>, Failure> {
         )
         .into());
     };
-    let vehicle: BTreeMap<String, f64> = Beside::read(file)?.vehicle;
+    let vehicle: BTreeMap<String, f64> = FileExtras::read(file)?.vehicle;
     let shown = if file.is_dir() {
         file.join("campaign.toml")
     } else {

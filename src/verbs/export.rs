@@ -41,7 +41,7 @@ pub struct Arguments {
     /// For an FMU: roll over this road on the tyre of the vehicle in --params; a class of ISO 8608 such as C@80km/h, or a profile such as
     /// cleat.csv@30km/h or road.crg#v=0.5@50km/h. Without it the effective road is an input
     #[arg(long, value_name = "ROAD@SPEED")]
-    road: Option<roads::Asked>,
+    road: Option<roads::RequestedRoad>,
     /// The file to write, with the ending of its kind
     #[arg(long, value_name = "FILE")]
     out: PathBuf,

@@ -98,7 +98,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     model.check_inertias(values.as_slice())?;
     let frequency = arguments.frequencies.values();
     let channels = chosen(model.about(), &arguments.channels)?;
-    let mut excited = Excited {
+    let mut excited = ExcitedModel {
         model: &*model,
         values: &values,
         frequency: &frequency,
@@ -178,7 +178,7 @@ pub(crate) fn chosen<'a>(about: &'a About, names: &[String]) -> Result<Vec<&'a C
 }
 
 /// A model under each of its excitations, each evaluated once for all channels.
-struct Excited<'a> {
+struct ExcitedModel<'a> {
     model: &'a dyn Model,
     values: &'a Values,
     frequency: &'a [f64],
@@ -186,7 +186,7 @@ struct Excited<'a> {
     responses: BTreeMap<usize, Response<'a, dyn Model + 'a>>,
 }
 
-impl<'a> Excited<'a> {
+impl<'a> ExcitedModel<'a> {
     fn respond(&mut self, channel: &Channel) -> Result<(String, ChannelResponse), Failure> {
         let about = self.model.about();
         let excitation = excitation(about, channel)?;

@@ -50,7 +50,7 @@ struct Measured {
     file: PathBuf,
     /// Path as the campaign must give it.
     seen: String,
-    contents: Contents<kind::Driven>,
+    contents: Contents<kind::PadMotion>,
 }
 
 /// Runs the verb.
@@ -59,8 +59,8 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let model = catalogue::load(&arguments.model)?;
     let name = name_of(&arguments.out)?;
     let pads = Look {
-        is_in: &|signal| kind::Driven::is_in(signal, model.about()),
-        take: &|signal| kind::Driven::of(signal, model.about()),
+        is_in: &|signal| kind::PadMotion::is_in(signal, model.about()),
+        take: &|signal| kind::PadMotion::of(signal, model.about()),
     };
     let mut files = Vec::new();
     for file in &arguments.files {

@@ -53,7 +53,7 @@ struct Inspected<'a> {
     format: &'a str,
     channels: Vec<Channel<'a>>,
     values: Vec<Single<'a>>,
-    passed_over: Vec<Passed<'a>>,
+    passed_over: Vec<SkippedPart<'a>>,
 }
 
 #[derive(Serialize)]
@@ -84,7 +84,7 @@ struct Single<'a> {
 }
 
 #[derive(Serialize)]
-struct Passed<'a> {
+struct SkippedPart<'a> {
     name: &'a str,
     place: String,
     why: &'a str,
@@ -93,7 +93,7 @@ struct Passed<'a> {
 impl<'a> Inspected<'a> {
     fn of<T>(contents: &'a Contents<T>) -> Self {
         let recording = &contents.recording;
-        let passed = recording.passed_over.iter().map(|passed| Passed {
+        let passed = recording.passed_over.iter().map(|passed| SkippedPart {
             name: &passed.name,
             place: passed.place.to_string(),
             why: &passed.why,

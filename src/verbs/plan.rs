@@ -66,7 +66,7 @@ struct Planned {
     campaign: String,
     model: String,
     parameters: Ordered<Parameter>,
-    further: Vec<Further>,
+    further: Vec<CandidateMeasurement>,
     notices: Vec<String>,
 }
 
@@ -82,7 +82,7 @@ struct Parameter {
 
 /// A measurement that could be added.
 #[derive(Serialize)]
-struct Further {
+struct CandidateMeasurement {
     kind: Kind,
     what: String,
     rise: f64,
@@ -212,7 +212,7 @@ fn planned(campaign: &Campaign, (about, values): (&About, &Values), found: Expec
         further: found
             .further
             .into_iter()
-            .map(|own| Further {
+            .map(|own| CandidateMeasurement {
                 kind: own.kind,
                 what: own.what,
                 rise: own.rise,
@@ -258,7 +258,7 @@ impl Planned {
     }
 
     /// The two parameters whose errors decrease most, as text.
-    fn relief(&self, of: &Further) -> String {
+    fn relief(&self, of: &CandidateMeasurement) -> String {
         let mut falls: Vec<(f64, String)> = Vec::new();
         for ((name, own), (_, then)) in self
             .parameters

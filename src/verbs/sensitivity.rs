@@ -35,8 +35,8 @@ pub(crate) mod render;
 mod figure;
 
 use doubts::{Doubts, Temperatures};
-use gather::Asked;
-use subject::{Beneath, Subject};
+use gather::AnalysisSettings;
+use subject::{Subject, SubjectOptions};
 
 /// Print how metrics of an axle depend on its parameters: elasticities, shares of variance, and uncertainty
 ///
@@ -63,7 +63,7 @@ pub struct Arguments {
     set: Vec<Setting>,
     /// A road beside the cleats: a class of ISO 8608 or a measured profile, such as C@60km/h or road.crg#v=0.5@50km/h; may be repeated
     #[arg(long, value_name = "ROAD@SPEED")]
-    road: Vec<roads::Asked>,
+    road: Vec<roads::RequestedRoad>,
     /// Only these runs; a * stands for any characters
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     runs: Vec<String>,
@@ -172,7 +172,7 @@ pub(crate) fn per_kelvin(text: &str) -> Result<f64, String> {
 
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
-    let beneath = Beneath {
+    let beneath = SubjectOptions {
         campaign: arguments.campaign.as_deref(),
         params: arguments.params.as_deref(),
         set: &arguments.set,
@@ -194,7 +194,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         designs: designs as usize,
         seed: arguments.seed,
     });
-    let asked = Asked {
+    let asked = AnalysisSettings {
         metrics: &metrics,
         parameters: &parameters,
         doubts: &doubts,

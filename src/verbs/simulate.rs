@@ -57,7 +57,7 @@ pub struct Arguments {
     /// Roll over this road in place of the campaign's runs; may be repeated: a class of ISO 8608 such as C@80km/h, C#7@80km/h with a seed
     /// of its own, or a measured profile such as road.crg#v=0.5@50km/h; each perhaps with a duration, `:20s`
     #[arg(long, value_name = "ROAD@SPEED")]
-    road: Vec<roads::Asked>,
+    road: Vec<roads::RequestedRoad>,
     /// Write the time histories into this folder, a file for each run; of a sweep or time history measured beside simulated, and an
     /// SVG; of a road power spectral densities as CSV and SVG
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
@@ -162,7 +162,7 @@ pub struct Simulated {
     campaign: Campaign,
     model: Loaded,
     values: Values,
-    cleats: Option<(Vec<Cleat>, Driven)>,
+    cleats: Option<(Vec<Cleat>, CleatResults)>,
     records: Vec<Record>,
 }
 
@@ -228,7 +228,7 @@ fn over_cleats(
     model: &Loaded,
     values: &Values,
     variant: Variant,
-) -> Result<Option<(Vec<Cleat>, Driven)>, InputError> {
+) -> Result<Option<(Vec<Cleat>, CleatResults)>, InputError> {
     if !campaign.runs.iter().any(|run| matches!(run.test, Test::Cleat { .. })) {
         return Ok(None);
     }
@@ -258,7 +258,7 @@ pub(crate) fn guessed(campaign: &Campaign, model: &Loaded, values: &Values) -> V
 }
 
 /// Every cleat run, simulated and compared.
-pub(crate) struct Driven {
+pub(crate) struct CleatResults {
     /// A ride for each run.
     pub rides: Vec<Ride>,
     /// Their errors.
@@ -275,7 +275,7 @@ pub(crate) fn drive(
     values: &Values,
     cleats: &[Cleat],
     variant: Variant,
-) -> Result<Driven, InputError> {
+) -> Result<CleatResults, InputError> {
     model.check_inertias(values.as_slice())?;
     let (tyre, load) = tyre(campaign)?;
     let car = Car {
@@ -290,7 +290,7 @@ pub(crate) fn drive(
     let rides = while_counting(format!("{}: ride", campaign.name), simulate);
     let rides = checked(cleats, rides)?;
     let compared = compared::compare(model.about(), &campaign.roles, cleats, &rides)?;
-    Ok(Driven { rides, compared })
+    Ok(CleatResults { rides, compared })
 }
 
 impl From<VariantName> for Variant {

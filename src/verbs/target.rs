@@ -16,7 +16,7 @@ use crate::parameters::Setting;
 use crate::report::{Report, page};
 use crate::terminal::prose;
 use crate::verbs::Format;
-use crate::verbs::sensitivity::subject::{Beneath, Subject};
+use crate::verbs::sensitivity::subject::{Subject, SubjectOptions};
 
 // The targets file.
 mod file;
@@ -68,7 +68,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let campaign = read.file.campaign.as_ref().map(|path| read.beside(path));
     let params = read.file.params.as_ref().map(|path| read.beside(path));
     let roads = read.roads()?;
-    let beneath = Beneath {
+    let beneath = SubjectOptions {
         campaign: campaign.as_deref(),
         params: params.as_deref(),
         set: &arguments.set,

@@ -3,7 +3,9 @@
 use models::axle_d::AxleD;
 use qcar_runtime::model::Model;
 use qcar_runtime::road::{Class, Random, Road};
-use qcar_runtime::simulate::{Car, Drive, Kept, Ridden, Ride, Settings, SimulateError, Variant, ride, rides_abreast};
+use qcar_runtime::simulate::{
+    Car, Drive, RecordedSignals, Ride, RideCase, Settings, SimulateError, Variant, ride, rides_abreast,
+};
 use qcar_runtime::tyre::{Geometry, Rates, Tyre};
 
 use super::cleat;
@@ -11,9 +13,9 @@ use super::cleat;
 /// Of each ride, in the order of their numbers.
 fn abreast(
     car: &Car<'_, dyn Model>,
-    rides: &[Ridden<'_>],
+    rides: &[RideCase<'_>],
     settings: &Settings,
-    kept: &Kept,
+    kept: &RecordedSignals,
 ) -> Vec<Result<Ride, SimulateError>> {
     let mut found: Vec<_> = rides.iter().map(|_| None).collect();
     rides_abreast(car, rides, settings, kept, |number, ride| {
@@ -22,8 +24,8 @@ fn abreast(
     found.into_iter().map(|ride| ride.expect("each ends")).collect()
 }
 
-fn alone(car: &Car<'_, dyn Model>, rides: &[Ridden<'_>], settings: &Settings) -> Vec<Result<Ride, SimulateError>> {
-    let one = |&(parameters, drive): &Ridden<'_>| ride(&Car { parameters, ..*car }, &drive, settings);
+fn alone(car: &Car<'_, dyn Model>, rides: &[RideCase<'_>], settings: &Settings) -> Vec<Result<Ride, SimulateError>> {
+    let one = |&(parameters, drive): &RideCase<'_>| ride(&Car { parameters, ..*car }, &drive, settings);
     rides.iter().map(one).collect()
 }
 
@@ -55,7 +57,7 @@ fn sets() -> Vec<Vec<f64>> {
 }
 
 /// Every set on every road, at speeds and with sample rates that differ.
-fn rides<'a>(sets: &'a [Vec<f64>], roads: &'a [Road]) -> Vec<Ridden<'a>> {
+fn rides<'a>(sets: &'a [Vec<f64>], roads: &'a [Road]) -> Vec<RideCase<'a>> {
     let of_set = |(place, set): (usize, &'a Vec<f64>)| {
         let drive = move |(road, own): (usize, &'a Road)| {
             let [speed, rate] = [
@@ -88,7 +90,7 @@ fn car<'a>(parameters: &'a [f64], tyre: (Geometry, Rates), variant: Variant) -> 
 #[test]
 fn each_ride_has_the_bits_that_it_has_alone() {
     let (sets, roads, settings) = (sets(), roads(), Settings::default());
-    let (rides, kept) = (rides(&sets, &roads), Kept::all(AxleD.about()));
+    let (rides, kept) = (rides(&sets, &roads), RecordedSignals::all(AxleD.about()));
     let usual = (Geometry::Area, Rates::AtStaticDeflection);
     for (tyre, variant) in [
         (usual, Variant::Complete),
@@ -110,7 +112,7 @@ fn each_ride_has_the_bits_that_it_has_alone() {
 #[test]
 fn a_ride_depends_on_no_other() {
     let (sets, roads, settings) = (sets(), roads(), Settings::default());
-    let (rides, kept) = (rides(&sets, &roads), Kept::all(AxleD.about()));
+    let (rides, kept) = (rides(&sets, &roads), RecordedSignals::all(AxleD.about()));
     let car = car(&sets[0], (Geometry::Area, Rates::AtStaticDeflection), Variant::Complete);
     let all = abreast(&car, &rides, &settings, &kept);
     for count in [1, 2, 3, 9] {
@@ -125,8 +127,8 @@ fn of_what_is_not_kept_nothing_is_there() {
     let (sets, roads, settings) = (sets(), roads(), Settings::default());
     let rides = rides(&sets[..2], &roads);
     let car = car(&sets[0], (Geometry::Area, Rates::AtStaticDeflection), Variant::Complete);
-    let all = Kept::all(AxleD.about());
-    let mut kept = Kept {
+    let all = RecordedSignals::all(AxleD.about());
+    let mut kept = RecordedSignals {
         force: true,
         area: false,
         ..all.clone()
@@ -156,7 +158,10 @@ fn a_ride_that_fails_stops_no_other() {
     rides[3].1.sample_rate = 20.0;
     rides[8].1.samples = 1_000_000;
     let usual = (Geometry::Area, Rates::AtStaticDeflection);
-    let (car, kept) = (car(&sets[0], usual, Variant::Complete), Kept::all(AxleD.about()));
+    let (car, kept) = (
+        car(&sets[0], usual, Variant::Complete),
+        RecordedSignals::all(AxleD.about()),
+    );
     let settings = Settings::default();
     let (found, expected) = (abreast(&car, &rides, &settings, &kept), alone(&car, &rides, &settings));
     assert_eq!(expected.iter().filter(|ride| ride.is_err()).count(), 2);

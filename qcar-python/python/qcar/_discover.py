@@ -1,4 +1,4 @@
-"""What a model lacks."""
+"""The search for effects that a model lacks."""
 
 from __future__ import annotations
 
@@ -12,29 +12,29 @@ from . import _html, _native
 
 @dataclass(frozen=True, eq=False)
 class Verdict:
-    """What a search has found, as docs/json.md describes it."""
+    """The result of a search; docs/json.md describes it."""
 
-    #: ``none``: noise explains the residuals; ``found``: `effects` explain it; ``class``: one of several; ``unknown``.
+    #: ``none``: noise explains the residuals; ``found``: `effects` explain them; ``class``: one of several does; ``unknown``.
     verdict: str
     probability: float | None
-    #: Each with ``name``, ``at``, ``form``, ``parameters``, ``stderr``, ``units`` and ``evidence``.
+    #: The effects found, each with ``name``, ``at``, ``form``, ``parameters``, ``stderr``, ``units`` and ``evidence``.
     effects: list[dict[str, Any]]
     #: The most probable sets of effects.
     candidates: list[dict[str, Any]] = field(repr=False)
-    #: ``fit`` and ``held_out``: residuals over their uncertainty, ``before`` and ``after``; 1 is noise.
+    #: RMS residual of the ``fit`` and ``held_out`` runs in standard deviations, ``before`` and ``after``; noise alone gives 1.
     gap: dict[str, dict[str, float]]
-    #: Where something would explain what the model leaves.
+    #: Places at which a change of the model would explain the residuals.
     places: list[dict[str, Any]] = field(repr=False)
     notices: list[str]
-    #: The text of the model with the effects in it, for ``qcar.Model.from_text``; ``None`` where none was found.
+    #: The text of the model with the effects, for ``qcar.Model.from_text``; ``None`` if none was found.
     model_text: str | None = field(repr=False)
-    #: The values of all parameters with all that was found, SI.
+    #: The values of all parameters, including those of the effects, SI.
     values: dict[str, float] = field(repr=False)
     #: The answer in words.
     text: str = field(repr=False)
-    #: What is left of each sensor over frequency, before and after.
+    #: The residual of each sensor over frequency, before and after.
     figure: _html.Figure = field(repr=False)
-    #: All of it.
+    #: The complete result, as in docs/json.md.
     details: dict[str, Any] = field(repr=False)
 
     def _repr_html_(self) -> str:
@@ -54,17 +54,17 @@ def _sentence(probability: float | None) -> str:
 
 
 def discover(campaign: str | os.PathLike[str], *, model: str | None = None) -> Verdict:
-    """Find the effect that a campaign shows and its model lacks.
+    """Find the effects that a campaign shows and its model lacks.
 
-    Fits the model to the runs with the role ``fit``, tries the effects of the catalogue wherever they apply, and judges them on the
-    runs that are ``held_out``.
+    Fits the model to the runs with the role ``fit``, tries the effects of the catalogue wherever they apply, and
+    checks them on the runs with the role ``held_out``.
 
     Parameters
     ----------
     campaign
         Folder with a campaign.toml.
     model
-        Name or path, in place of the campaign's model.
+        Name or path of a model that replaces the campaign's.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Rides for every point of a design, of which metrics are kept and no records."""
+"""Metrics of a ride for each row of a design, without the records of the rides."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from ._model import Model
 from ._named import Array
 from ._ride import Ride, ride
 
-#: Rides whose records are in memory at once.
+#: Number of rides whose records are in memory at the same time.
 AT_ONCE = 256
 
-#: What a design may vary in addition to the parameters of the model.
+#: Columns that a design may have in addition to the parameters of the model.
 DRIVEN = ("speed", "height")
 
 Design = Mapping[str, npt.ArrayLike]
@@ -25,12 +25,12 @@ Vehicle = Mapping[str, float] | str | os.PathLike[str]
 
 
 def columns(design: Design) -> dict[str, Array]:
-    """A design with every column in one length; a number stands for all rows.
+    """A design whose columns all have one length; a number applies to all rows.
 
     Raises
     ------
     qcar.ParameterError
-        Columns of unlike length, or none.
+        Columns of different lengths, or no columns.
     """
     try:
         arrays = np.broadcast_arrays(*(np.asarray(own, dtype=float) for own in design.values()))
@@ -43,22 +43,22 @@ def columns(design: Design) -> dict[str, Array]:
 
 
 def ride_metrics(model: Model, design: Design, *, vehicle: Vehicle, **options: Any) -> dict[str, Array]:
-    """One ride for each row of a design: the design's columns, followed by those of the metrics.
+    """Simulate one ride for each row of a design.
 
     Parameters
     ----------
     model
         A model whose tyre rolls.
     design
-        Columns by name: parameters of the model, ``speed`` (m/s) and ``height`` (of the cleat, m); a number stands for all rows.
+        Columns by name: parameters of the model, ``speed`` (m/s) and ``height`` (of the cleat, m); a number applies to all rows.
     vehicle, options
         As in `qcar.ride`; `speed` and `height` may be given here if they are the same for all.
 
     Returns
     -------
     columns
-        Each (rows,), SI: the design; for each output ``peak_<output>`` and ``after_shake_<output>``; ``static_deflection``;
-        ``lift_offs``, how often the tyre has left the ground. Each row has the bits of its ride alone.
+        Each (rows,), SI: the columns of the design; for each output ``peak_<output>`` and ``after_shake_<output>``;
+        ``static_deflection``; ``lift_offs``, how often the tyre has left the ground. A row has the same bits as a single ride.
     """
     table = columns(design)
     rows = len(next(iter(table.values())))

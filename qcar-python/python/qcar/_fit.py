@@ -16,14 +16,14 @@ from ._named import Array, ComplexArray
 
 @dataclass(frozen=True, eq=False)
 class Ratio:
-    """A measured ratio of two signals, such as a transmissibility, and that of the fitted model."""
+    """A measured ratio of two signals, such as a transmissibility, with that of the fitted model."""
 
     run: str
     #: ``fit`` or ``held_out``.
     role: str
-    #: As ``pad_to_body``.
+    #: Such as ``pad_to_body``.
     channel: str
-    #: True where it was fitted to.
+    #: Whether the fit used it.
     fitted: bool
     #: Hz: (lines,).
     frequency: Array
@@ -37,33 +37,33 @@ class Ratio:
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """What a fit has found. `details` has all of it as docs/json.md describes it."""
+    """The result of a fit. `details` is the complete result as in docs/json.md."""
 
     campaign: str
     model: str
-    #: Every parameter by name, SI; what follows another parameter is left out, so that ``model.matrices(fit.values)`` is the fitted model.
+    #: Parameters by name, SI, without those that follow another one: ``model.matrices(fit.values)`` gives the fitted model.
     values: dict[str, float]
-    #: Standard errors by name, SI; only of parameters that have one.
+    #: Standard errors by name, SI, of the parameters that have one.
     stderr: dict[str, float]
-    #: ``"lower"`` or ``"upper"`` for each parameter that rests on an end of its range.
+    #: ``"lower"`` or ``"upper"`` for each parameter at an end of its range.
     at_bound: dict[str, str]
     #: Names of the fitted parameters that have a standard error, in the order of `covariance`.
     free: list[str]
-    #: Of `free`, SI.
+    #: Covariance of the parameters in `free`, SI: (free, free).
     covariance: Array = field(repr=False)
-    #: Sum of the squared weighted errors, at the values found and at the start.
+    #: Sum of the squared weighted residuals, at the fitted values and at the start values.
     cost: float
     start_cost: float
     converged: bool
     #: Why the search stopped.
     stopped: str
     evaluations: int
-    #: How well each channel of each run is met: ``fit_magnitude`` and ``fit_phase`` in percent, 100 for no error.
+    #: Fit percentages of each channel of each run: ``fit_magnitude`` and ``fit_phase``, 100 for no error.
     channels: list[dict[str, Any]] = field(repr=False)
     notices: list[str]
-    #: Measured and modelled, line by line.
+    #: The measured and modelled ratios.
     ratios: list[Ratio] = field(repr=False)
-    #: Magnitudes of the first run: measured, at the start and fitted.
+    #: Magnitudes of the first run: measured, with the start values and fitted.
     figure: _html.Figure = field(repr=False)
     details: dict[str, Any] = field(repr=False)
 
@@ -97,18 +97,18 @@ def fit(
     campaign
         Folder with a campaign.toml.
     model
-        Name or path, in place of the campaign's model.
+        Name or path of a model that replaces the campaign's.
     starts
-        Searches, 1 to 10 000: the first from the campaign's start values, the others from all over its ranges.
+        Number of searches, 1 to 10 000. The first starts from the campaign's start values, the others from points in its ranges.
     channels
-        Fit to these, such as ``pad_to_wheel``, in place of those over the model's force elements.
+        The channels to fit, such as ``pad_to_wheel``; by default those across the model's force elements.
     free, fix
-        Parameters that are fitted too, or kept at their start values.
+        Parameters to fit in addition, or to keep at their start values.
 
     Raises
     ------
     qcar.CampaignError
-        With every mistake that was found: file, place, what was found, what is expected, and what to do.
+        With every mistake: file, place, what was found, what was expected, and the remedy.
     """
     if starts is not None and not 1 <= starts <= 10_000:
         raise _native.ParameterError(f"`starts` is {starts}; expected 1 to 10000 searches")

@@ -1,4 +1,4 @@
-"""Results as notebooks show them."""
+"""Results as HTML, for notebooks."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Figure:
-    """A figure that a notebook shows where it is the value of a cell."""
+    """A figure that a notebook shows as the value of a cell."""
 
     svg: str = field(repr=False)
 
@@ -22,7 +22,7 @@ class Figure:
 
 
 def number(value: float | None, digits: int = 5) -> str:
-    """A number for people; nothing where there is none."""
+    """A number with few digits; an empty text for ``None``."""
     return "" if value is None else f"{value:.{digits}g}"
 
 
@@ -45,7 +45,7 @@ def titled(title: str, sentence: str, *parts: str) -> str:
 
 
 def model(of: Model) -> str:
-    """A model: what it has."""
+    """A model's parameters, states, inputs and outputs."""
     rows = (
         (own.name, _default(own.default, own.same_as), own.unit, _range(own.range), own.doc) for own in of.parameters
     )

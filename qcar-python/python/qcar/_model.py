@@ -1,4 +1,4 @@
-"""Models: shipped, from files, from text."""
+"""Models: shipped ones, and those from files or texts."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ from ._named import (
     StateSpace,
 )
 
-#: Values by name, numbers or arrays that broadcast against each other; an array whose last axis is ``Model.parameters``; or none,
-#: where every parameter has a default.
+#: Values by name, numbers or arrays that broadcast against each other; or an array whose last axis is ``Model.parameters``;
+#: or ``None`` if every parameter has a default.
 Parameters = Union[Mapping[str, npt.ArrayLike], npt.ArrayLike, None]
 
-#: What evaluates parameter sets at lines: values, and derivatives with parameters along the second axis.
+#: A function that evaluates parameter sets at frequencies: values, and derivatives with parameters along the second axis.
 _OverLines = Callable[[Array, Sequence[int], Array, bool], tuple[ComplexArray, Union[ComplexArray, None]]]
 
 
@@ -37,8 +37,8 @@ class Model:
 
     ``qcar.Model("axle_d")`` is a shipped model (``qcar.models()`` lists them) or, by its path, a model file.
     All quantities are in SI units. Wherever a method takes `params`, parameters that are not given have their defaults,
-    and arrays of values are evaluated set by set: the batch's axes come first in what is returned, and every set has the
-    same bits as it has alone.
+    and arrays of values are evaluated set by set: the batch axes come first in the result, and each set gives the same
+    bits as on its own.
 
     Raises
     ------
@@ -49,12 +49,12 @@ class Model:
     def __init__(self, model: str | os.PathLike[str]) -> None:
         name = os.fspath(model)
         is_path = any(sign in name for sign in "/\\.")
-        # Another process may have another folder.
+        # An absolute path, because an unpickled model may be in a process with another working directory.
         self._begin(_native.Model.load(name), ("load", os.path.abspath(name) if is_path else name))
 
     @classmethod
     def from_file(cls, path: str | os.PathLike[str]) -> Model:
-        """The model in a file, whatever it is called."""
+        """The model in a file of any name."""
         path = os.fspath(path)
         return cls(path if os.path.dirname(path) else os.path.join(os.curdir, path))
 
@@ -62,7 +62,7 @@ class Model:
     def from_text(cls, text: str, name: str = "text.axle") -> Model:
         """The model in a text.
 
-        A family that it begins from (``from "corner.axle"``) is searched beside the file that `name` would be.
+        A family that it refers to (``from "corner.axle"``) is searched in the folder of `name`.
         """
         model = cls.__new__(cls)
         model._begin(_native.Model.text(text, name), ("text", text, name))
@@ -75,7 +75,7 @@ class Model:
         self.name: str = about["name"]
         #: The sentence that describes it.
         self.doc: str = about["doc"]
-        #: True where A, B, C and D hold for any state, false where they are a linearisation.
+        #: Whether A, B, C and D hold for any state; otherwise they are a linearisation.
         self.linear: bool = about["linear"]
         self.parameters: tuple[Parameter, ...] = tuple(_parameter(own) for own in about["parameters"])
         self.states: tuple[State, ...] = tuple(_state(own) for own in about["states"])
@@ -103,8 +103,8 @@ class Model:
         Parameters
         ----------
         stage
-            ``"model"``: its file, options taken; ``"equations"`` of motion; ``"matrices"``: their nonzeros as formulas; ``"latex"``: both as a
-            document; ``"rust"``: the generated module; ``"dot"``: masses and links as a graph for Graphviz.
+            ``"model"``: its text with options resolved; ``"equations"`` of motion; ``"matrices"``: their nonzeros as formulas;
+            ``"latex"``: both as a document; ``"rust"``: the generated module; ``"dot"``: masses and links as a graph for Graphviz.
         """
         how, *source = self._source
         name, text = (source[0], None) if how == "load" else (source[1], source[0])
@@ -128,8 +128,8 @@ class Model:
         Parameters
         ----------
         x, u
-            States (..., states) and inputs (..., inputs), displacements from the design position; inputs are zero where they are left
-            out.
+            States (..., states) and inputs (..., inputs), displacements from the design position. Inputs that are
+            left out are zero.
         params
             Parameter values; they, `x` and `u` broadcast against each other.
         """
@@ -137,7 +137,7 @@ class Model:
         return self._native.derivatives(at).reshape(*batch, len(self.states))
 
     def output(self, x: npt.ArrayLike, u: npt.ArrayLike | None = None, params: Parameters = None) -> Array:
-        """The outputs ``y = h(x, u)``: (..., outputs). Arguments as those of `derivative`."""
+        """The outputs ``y = h(x, u)``: (..., outputs), with the arguments of `derivative`."""
         at, _, batch = self._at(params, x, u)
         return self._native.outputs(at).reshape(*batch, len(self.outputs))
 
@@ -151,7 +151,7 @@ class Model:
         params
             Parameter values.
         x, u
-            States (..., states) and inputs (..., inputs) about which a nonlinear model is linearised; at rest where they are left out.
+            States (..., states) and inputs (..., inputs) about which a nonlinear model is linearised; by default at rest.
             A linear model has the same matrices everywhere.
         """
         at, _, batch = self._at(params, x, u)
@@ -160,7 +160,7 @@ class Model:
     def jacobians(
         self, params: Parameters = None, x: npt.ArrayLike | None = None, u: npt.ArrayLike | None = None
     ) -> Jacobians:
-        """The exact derivatives of A, B, C and D by every parameter; arguments as those of `matrices`."""
+        """The exact derivatives of A, B, C and D by every parameter, with the arguments of `matrices`."""
         at, leader, batch = self._at(params, x, u)
         return Jacobians(*(self._by_name(own, leader, batch) for own in self._native.jacobians(at, leader)))
 
@@ -186,13 +186,13 @@ class Model:
         params
             Parameter values.
         jacobian
-            Give the derivatives, too.
+            Whether to return the derivatives as well.
 
         Returns
         -------
         response
             (..., lines, outputs, excitations), in units of the output per m of a motion or per N of a force. An excitation is a
-            motion with its rate and acceleration, whichever of them are inputs. Nonlinear models are linearised at rest.
+            motion with those of its rate and acceleration that are inputs. Nonlinear models are linearised at rest.
         derivatives
             With `jacobian`: for each parameter by name an array of the shape of the response.
         """
@@ -213,8 +213,8 @@ class Model:
     ) -> ComplexArray | tuple[ComplexArray, dict[str, ComplexArray]]:
         """The named ratios of the model, such as the transmissibility ``pad_to_body``: (..., lines, channels).
 
-        Channels are in the order of `channels`; arguments as those of `frf`, and what drives a ratio is its denominator where that
-        can be prescribed, else the road. A ratio of two accelerations is that of the displacements, too.
+        Channels are in the order of `channels`; the arguments are those of `frf`. The excitation of a ratio is its denominator if that
+        can be prescribed, otherwise the road. A ratio of two accelerations equals that of the displacements.
         """
         return self._over_lines(self._native.ratios, frequencies, params, jacobian)
 
@@ -232,7 +232,7 @@ class Model:
         return value, self._by_name(slopes, leader, batch)
 
     def modes(self, params: Parameters = None) -> list[Mode]:
-        """The natural vibrations of the model linearised at rest, lowest frequency first; for one parameter set."""
+        """The modes of the model linearised at rest, lowest frequency first, for one parameter set."""
         p, _, batch = self._resolve(params)
         if batch:
             raise _native.ParameterError(f"modes are those of one parameter set, found sets of the shape {batch}")
@@ -250,7 +250,7 @@ class Model:
         return {name: of_batch[place] for place, name in own}
 
     def _resolve(self, params: Parameters) -> tuple[Array, list[int], tuple[int, ...]]:
-        """All parameters (sets, parameters), whom each of them follows, and the shape of the batch."""
+        """All parameters (sets, parameters), the index of the parameter that each one follows, and the shape of the batch."""
         names, columns, batch = self._columns(params)
         given = np.empty((int(np.prod(batch, dtype=int)), len(names)))
         for place, column in enumerate(columns):
@@ -281,7 +281,7 @@ class Model:
     def _at(
         self, params: Parameters, x: npt.ArrayLike | None, u: npt.ArrayLike | None
     ) -> tuple[tuple[Array, Array, Array], list[int], tuple[int, ...]]:
-        """Parameters, states and inputs (sets, ...), whom each parameter follows, and the shape of the batch."""
+        """Parameters, states and inputs (sets, ...), the index of the parameter that each one follows, and the shape of the batch."""
         p, leader, batch = self._resolve(params)
         points = [p.reshape(*batch, p.shape[-1]), _rows("x", x, len(self.states)), _rows("u", u, len(self.inputs))]
         try:
@@ -300,7 +300,7 @@ def _rows(what: str, given: npt.ArrayLike | None, count: int) -> Array:
 
 
 def _again(how: str, *source: str) -> Model:
-    """What pickle makes a model from: its name or path, or its text."""
+    """Restores a pickled model from its name or path, or from its text."""
     return Model(source[0]) if how == "load" else Model.from_text(*source)
 
 

@@ -1,4 +1,4 @@
-"""What a model has, and what it gives, as named tuples."""
+"""Parts and results of a model as named tuples."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ class Parameter(NamedTuple):
     """A parameter of a model."""
 
     name: str
-    #: Unit, as in ``N s/m``.
+    #: Unit, such as ``N s/m``.
     unit: str
     doc: str
-    #: Its value where nobody gives it one; ``None`` where it must be given, or follows another parameter.
+    #: Default value; ``None`` if the value must be given, or follows another parameter.
     default: float | None
-    #: The parameter whose value it takes where nobody gives it one.
+    #: The parameter whose value it takes unless it is given.
     same_as: str | None
-    #: Bounds of what is plausible.
+    #: Plausible range.
     range: tuple[float, float] | None
-    #: True where it is never estimated unless a campaign asks for it.
+    #: Whether it is estimated only if a campaign asks for it.
     known: bool
 
 
@@ -65,7 +65,7 @@ class Output(NamedTuple):
 
 
 class Excitation(NamedTuple):
-    """What drives a frequency response: a motion with all its derivatives, or a force."""
+    """The excitation of a frequency response: a motion with its derivatives, or a force."""
 
     name: str
     #: ``m`` or ``N``: the response is per unit of it.
@@ -76,9 +76,9 @@ class Excitation(NamedTuple):
 
 
 class StateSpace(NamedTuple):
-    """``dx/dt = A x + B u``, ``y = C x + D u``; the first axes are those of a batch of parameter sets.
+    """``dx/dt = A x + B u``, ``y = C x + D u``; the axes of a batch of parameter sets come first.
 
-    Takes the place of ``A, B, C, D`` wherever SciPy wants them: ``scipy.signal.StateSpace(*model.matrices())``.
+    SciPy accepts it in place of ``A, B, C, D``: ``scipy.signal.StateSpace(*model.matrices())``.
     """
 
     #: (..., states, states)
@@ -94,7 +94,7 @@ class StateSpace(NamedTuple):
 class Jacobians(NamedTuple):
     """Derivatives of A, B, C and D by each parameter: ``dA["k_tire"]`` has the shape of A.
 
-    What a parameter moves through others that take their value from it counts as its own, and these have no entry.
+    A derivative includes the effect of parameters that take their value from this one; those have no entry.
     """
 
     dA: dict[str, Array]
@@ -104,11 +104,11 @@ class Jacobians(NamedTuple):
 
 
 class Mode(NamedTuple):
-    """A natural vibration."""
+    """A mode of vibration."""
 
     #: Undamped natural frequency, Hz.
     frequency: float
     #: Damping ratio, below 1.
     damping: float
-    #: Amplitude of every position that moves, by the name of its state; the largest is 1.
+    #: Amplitudes of the positions that move, by the name of the state; the largest is 1.
     shape: dict[str, complex]

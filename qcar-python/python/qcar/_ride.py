@@ -1,4 +1,4 @@
-"""Rides over a road, and the runs of a campaign driven again."""
+"""Rides over a road, and simulations of the runs of a campaign."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from . import _html, _native
 from ._model import Model, Parameters
 from ._named import Array
 
-#: What a rolling tyre needs to know of a vehicle.
+#: Vehicle data that a rolling tyre needs.
 FACTS = ("r_tire", "static_tire_def", "static_tire_load")
 
 
 @dataclass(frozen=True, eq=False)
 class Ride:
-    """One ride or a batch of them, whose axes come first."""
+    """One ride, or a batch of rides whose axes come first."""
 
     #: s: (samples,).
     time: Array
@@ -29,18 +29,18 @@ class Ride:
     outputs: dict[str, Array]
     #: Accelerations by mass and axis, such as ``("wheel", "z")``, m/s²: (..., samples). The same arrays as in `outputs`.
     accelerations: dict[tuple[str, str], Array]
-    #: Force of the tyre on the wheel, N: (..., samples); zero while it has left the ground.
+    #: Force of the tyre on the wheel, N: (..., samples); zero while the tyre is in the air.
     tire_force_z: Array
     tire_force_x: Array
     #: Area of the tyre's contact, m²: (..., samples).
     contact_area: Array
-    #: Largest magnitude within 0.1 s after the wheel feels the obstacle, by output: (...,). Not a number where the wheel feels none.
+    #: Largest magnitude within 0.1 s after the wheel reaches the obstacle, by output: (...,). NaN if it reaches none.
     peak: dict[str, Array]
-    #: Root mean square in the second after that, or to the end of the record, by output: (...,).
+    #: RMS value in the second after that, or to the end of the record, by output: (...,).
     after_shake: dict[str, Array]
     #: Deflection of the tyre before the obstacle, m: (...,).
     static_deflection: Array
-    #: When the tyre lost the ground, s; ride by ride in the order of the batch.
+    #: Times at which the tyre left the ground, s, for each ride in the order of the batch.
     lift_offs: list[list[float]] = field(repr=False)
 
     def _repr_html_(self) -> str:
@@ -78,28 +78,29 @@ def ride(
     model, params
         A model whose tyre rolls, and its parameter values.
     vehicle
-        Of the tyre its radius ``r_tire`` (m), and the deflection ``static_tire_def`` (m) and load ``static_tire_load`` (N) at rest; or a
-        campaign or parameter file that has them. What else it says of parameters of the model holds where `params` does not give them.
+        Radius ``r_tire`` (m) of the tyre, and its deflection ``static_tire_def`` (m) and load ``static_tire_load`` (N) at rest; or a
+        campaign or parameter file with these. Its values of other parameters apply where `params` has none.
     speed
         m/s.
     height
-        Of the cleat's step, m.
+        Height of the cleat's step, m.
     descent, blend
-        The straight part of the cleat after its step, and its return to the flat, m.
+        Lengths of the straight part of the cleat after its step, and of its return to the flat road, m.
     run_in
-        Flat road before the cleat, m. The wheel is over its beginning at t = 0.
+        Length of the flat road before the cleat, m. At t = 0 the wheel is over its beginning.
     road
-        In place of a cleat, corners of a profile: x and z in m, x never decreasing; two corners at one x are a step. It goes on flat.
+        Corners of a profile instead of a cleat: x and z in m, x never decreasing; two corners at one x are a step. Beyond
+        it the road is flat.
     duration, sample_rate
-        s and Hz; ``round(duration * sample_rate)`` samples, the first at t = 0, through an anti-alias filter of linear phase.
+        s and Hz; ``round(duration * sample_rate)`` samples, the first at t = 0, after a linear-phase anti-alias filter.
     variant
-        ``"complete"``; ``"locked"``: all moves along the road at constant speed; ``"vertical"``: locked, and the tyre feels
-        no more of the road than its height below the wheel's centre.
+        ``"complete"``; ``"locked"``: all masses move along the road at constant speed; ``"vertical"``: locked, with a tyre
+        in point contact, whose road is the height below the wheel's centre.
     tolerance
-        Relative, of the time steps.
+        Relative tolerance of the time steps.
 
-    `params`, `speed` and `height` may be arrays that broadcast against each other: a ride for each entry, in parallel, and each
-    with the bits that it has alone.
+    `params`, `speed` and `height` may be arrays that broadcast against each other: a ride for each entry, in parallel, with the
+    same bits as a single ride.
 
     Raises
     ------
@@ -163,7 +164,7 @@ def _samples(duration: float, sample_rate: float) -> int:
 
 
 def _facts(vehicle: Mapping[str, float] | str | os.PathLike[str], model: Model) -> dict[str, float]:
-    """What a vehicle says of its tyre and of parameters of the model."""
+    """Data of a vehicle: of its tyre, and parameters of the model."""
     known = {*FACTS, *(own.name for own in model.parameters)}
     facts = vehicle if isinstance(vehicle, Mapping) else read_vehicle(vehicle)
     unknown = sorted(set(facts) - known)
@@ -175,7 +176,7 @@ def _facts(vehicle: Mapping[str, float] | str | os.PathLike[str], model: Model) 
 
 
 def _with_facts(params: Parameters, facts: dict[str, float], model: Model) -> Parameters:
-    """Parameters by name, with what the vehicle says of others; an array has all of them already."""
+    """Parameters by name, completed by the data of the vehicle; an array already has all of them."""
     if params is not None and not isinstance(params, Mapping):
         return params
     names = {own.name for own in model.parameters}
@@ -193,34 +194,34 @@ def _corners(road: tuple[npt.ArrayLike, npt.ArrayLike]) -> list[list[float]]:
 
 
 def read_vehicle(path: str | os.PathLike[str]) -> dict[str, float]:
-    """The facts of the vehicle, SI, in a campaign or parameter file."""
+    """The vehicle data, SI, of a campaign or parameter file."""
     return _native.read_values(path)[1]
 
 
 def read_parameters(path: str | os.PathLike[str], model: Model) -> dict[str, float]:
-    """The values of a model's parameters, SI, from a campaign, a parameter file or the results of a fit; missing parameters are left out."""
+    """The values of a model's parameters, SI, from a campaign, a parameter file or a fit's results, without those that it lacks."""
     values = _native.read_values(path)[0]
     return {own.name: values[own.name] for own in model.parameters if own.name in values}
 
 
 @dataclass(frozen=True, eq=False)
 class History:
-    """A run over time."""
+    """The signals of a run over time."""
 
     #: s: (samples,).
     time: Array
-    #: By channel, SI: (samples,). Of a sweep or time history each sensor has two: ``..._measured`` and ``..._simulated``.
+    #: By channel, SI: (samples,). For a sweep or time history each sensor has two: ``..._measured`` and ``..._simulated``.
     signals: dict[str, Array]
     units: dict[str, str]
 
 
 @dataclass(frozen=True, eq=False)
 class Simulation:
-    """The runs of a campaign, simulated and compared with what was measured."""
+    """The runs of a campaign, simulated and compared with the measurements."""
 
     campaign: str
     model: str
-    #: Parameters that the campaign wants fitted and that have its start values still.
+    #: Parameters that should be fitted but still have the campaign's start values.
     at_start: list[str]
     #: One for each cleat run, mass and axis: peaks, after-shakes and their relative errors (docs/json.md).
     runs: list[dict[str, Any]]
@@ -229,7 +230,7 @@ class Simulation:
     #: One for each sweep or time history and sensor: root mean squares, and ``nrms``.
     records: list[dict[str, Any]]
     notices: list[str]
-    #: By the name of the run.
+    #: Signals by the name of the run.
     histories: dict[str, History] = field(repr=False)
 
     def _repr_html_(self) -> str:
@@ -260,11 +261,11 @@ def simulate(
     campaign
         Folder with a campaign.toml.
     params
-        Values in place of the campaign's start values: by name in SI, or a parameter file.
+        Values that replace the campaign's start values: by name in SI, or a parameter file.
     model
-        Name or path, in place of the campaign's model.
+        Name or path of a model that replaces the campaign's.
     variant
-        As of `ride`, for cleat runs.
+        As in `ride`, for cleat runs.
 
     Raises
     ------

@@ -1,7 +1,8 @@
-"""Rides of a large design on a cluster of dask workers: the rows of one machine, bit by bit.
+"""Rides of a large design on a cluster of Dask workers, with the same bits as on one machine.
 
-A design is cut into parts; each is a task of its own, and one whose worker is lost is done again by another. Workers need the package
-``qcar``. Each ride uses one thread and a worker all cores that it sees; set ``RAYON_NUM_THREADS`` where several workers share a machine.
+A design is divided into parts, each of which is a task. If a worker is lost, another repeats its tasks. Workers need the
+package ``qcar``. Each ride uses one thread, and a worker uses all cores; set ``RAYON_NUM_THREADS`` if several workers share a
+machine.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from ._ride import _facts
 if TYPE_CHECKING:
     from distributed import Client, Future
 
-#: How often a task is tried again that fails with its worker.
+#: How often a task is repeated whose worker fails.
 RETRIES = 5
 
 
@@ -41,14 +42,14 @@ def ride_metrics(
     Parameters
     ----------
     client
-        Of ``distributed``.
+        A client of ``distributed``.
     model, design, vehicle, options
-        As of `qcar.ride_metrics`.
+        As in `qcar.ride_metrics`.
     rows
-        Of the design in one task.
+        Number of rows of the design in one task.
     out
-        A folder that all workers see. Each part is written there as Parquet by the worker that did it, whole or not at all; parts
-        that are there already are not done again, so that a run that was ended goes on. It takes ``pyarrow``.
+        A folder that all workers can reach. Each part is written there as a Parquet file, which appears only when complete; parts that
+        exist are not computed again, so an interrupted run can be continued. This needs ``pyarrow``.
 
     Returns
     -------
@@ -72,7 +73,7 @@ def submit(
     out: str | os.PathLike[str] | None = None,
     **options: Any,
 ) -> Sequence[Future[Any]]:
-    """The tasks of `ride_metrics`, begun: a future for each part, in the order of the design."""
+    """Submits the tasks of `ride_metrics`: a future for each part, in the order of the design."""
     table = columns(design)
     count = len(next(iter(table.values())))
     facts = _facts(vehicle, model)
@@ -89,7 +90,7 @@ def submit(
 def _part(
     model: Model, rows: Mapping[str, Array], facts: dict[str, float], options: dict[str, Any], out: str | None, number: int
 ) -> dict[str, Array] | str:
-    """One part of a design, on a worker: its columns, or the file into which they were written."""
+    """Computes one part of a design on a worker: its columns, or the file to which they are written."""
     if out is None:
         return here(model, rows, vehicle=facts, **options)
     file = Path(out) / f"part-{number:06}.parquet"
@@ -99,7 +100,7 @@ def _part(
 
 
 def _write(file: Path, table: Mapping[str, Array]) -> None:
-    """Under another name first: what has its own name is whole."""
+    """Writes under a temporary name first, so that a file with its final name is complete."""
     import pyarrow
     import pyarrow.parquet
 

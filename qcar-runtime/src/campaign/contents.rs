@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::reading::Recorded;
+use super::reading::RunData;
 
 /// Keys of `[vehicle]` besides parameters of the model, values of one corner, SI.
 pub const FACTS: [&str; 7] = [
@@ -52,7 +52,7 @@ pub struct Campaign {
     /// Notices for the engineer, as sentences.
     pub notices: Vec<String>,
     /// Data of the runs whose files are no plain tables.
-    pub(super) recorded: Vec<Recorded>,
+    pub(super) recorded: Vec<RunData>,
 }
 
 /// Masses of the model that a campaign names itself; see [`Roles`](crate::roles::Roles).

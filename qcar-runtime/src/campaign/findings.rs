@@ -5,7 +5,7 @@ use qcar_signals::resample::Grid;
 use super::contents::{Campaign, Run, Test};
 use super::finding::Finding;
 use super::history::History;
-use super::reading::Missing;
+use super::reading::MissingChannel;
 use super::samples::of_samples;
 use crate::error::{InputError, Place, Problem};
 
@@ -125,7 +125,7 @@ impl Campaign {
     }
 
     /// The runs whose file has no channel for a sensor.
-    fn missing<'a>(&'a self, name: &'a str) -> impl Iterator<Item = (&'a str, &'a Missing)> {
+    fn missing<'a>(&'a self, name: &'a str) -> impl Iterator<Item = (&'a str, &'a MissingChannel)> {
         self.recorded.iter().flat_map(move |recorded| {
             let own = recorded.missing.iter().filter(move |missing| missing.name == name);
             own.map(|missing| (recorded.run.as_str(), missing))

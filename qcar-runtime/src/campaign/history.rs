@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::contents::{Campaign, Channel, Run, Test};
-use super::reading::Recorded;
+use super::reading::RunData;
 use super::steps;
 use super::table::{self, Table};
 use crate::error::{InputError, Place, Problem};
@@ -88,7 +88,7 @@ impl Campaign {
         })
     }
 
-    fn recorded_history(&self, run: &Run, recorded: &Recorded) -> Result<History, InputError> {
+    fn recorded_history(&self, run: &Run, recorded: &RunData) -> Result<History, InputError> {
         let file = self.folder.join(&run.file);
         if run.test.sample_rate().is_none() {
             return Err(no_history(&file));

@@ -4,12 +4,12 @@ use std::path::Path;
 
 use super::contents::{Campaign, Channel, Parameter, Profile, Road, RoleNames, Test, unit_of_fact};
 use super::fields::{Document, Section};
-use super::reading::Recorded;
+use super::reading::RunData;
 use super::recorded::{self, Files};
 use super::table;
 use super::unit::Declared;
 use crate::error::{InputError, Place, Problem};
-use runs::{Known, is_table, run};
+use runs::{RunContext, is_table, run};
 use sensors::sensors;
 
 // Entries of the campaign's workbook.
@@ -81,7 +81,7 @@ fn campaign(folder: &Path, top: Section<'_>, files: &Files) -> Option<Campaign> 
     let sensors = sensors(folder, &top);
     let roads = each(top.sections("road"), "name", road, |road| &road.name);
     let roads = roads.map(|roads| workbook.with_roads(roads));
-    let known = Known {
+    let known = RunContext {
         folder,
         files,
         roads: roads.as_deref(),
@@ -218,7 +218,7 @@ fn road(section: &Section<'_>) -> Option<Road> {
 }
 
 /// Reads the runs of files that are no plain tables.
-fn recorded_runs(campaign: &Campaign, files: &Files) -> Result<Vec<Recorded>, InputError> {
+fn recorded_runs(campaign: &Campaign, files: &Files) -> Result<Vec<RunData>, InputError> {
     let (mut runs, mut problems) = (Vec::new(), Vec::new());
     for run in campaign.runs.iter().filter(|run| !run.plain) {
         match recorded::record(campaign, files, run) {

@@ -5,7 +5,7 @@ use crate::error::Problem;
 
 /// Data of a run.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Recorded {
+pub(super) struct RunData {
     /// The run's name.
     pub run: String,
     /// Time of the first sample, s.
@@ -15,12 +15,12 @@ pub(super) struct Recorded {
     /// Name and samples (SI) of each sensor or column, all of one length.
     pub columns: Vec<(String, Vec<f64>)>,
     /// Taps without a channel in the file.
-    pub missing: Vec<Missing>,
+    pub missing: Vec<MissingChannel>,
     /// Flaws of the samples before resampling.
     pub findings: Vec<Finding>,
 }
 
-impl Recorded {
+impl RunData {
     /// True if it has a sensor or column.
     pub fn has(&self, name: &str) -> bool {
         self.columns.iter().any(|(own, _)| own == name)
@@ -41,7 +41,7 @@ impl Recorded {
 
 /// A tap without a channel in a file.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Missing {
+pub(super) struct MissingChannel {
     pub name: String,
     pub problem: Problem,
 }

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use super::contents::{Campaign, Run, Tap};
-use super::reading::{Missing, Recorded};
+use super::reading::{MissingChannel, RunData};
 use crate::error::{InputError, Place, Problem};
 use channel::Channel;
 use together::Together;
@@ -29,7 +29,7 @@ pub(super) use files::{BESIDE_MANIFEST, Files, problem, recording};
 
 impl Campaign {
     /// Data of a run; `None` if its file is a plain table.
-    pub(super) fn recorded(&self, run: &Run) -> Option<&Recorded> {
+    pub(super) fn recorded(&self, run: &Run) -> Option<&RunData> {
         self.recorded.iter().find(|recorded| recorded.run == run.name)
     }
 
@@ -73,7 +73,7 @@ pub(super) fn highest_rate(files: &Files, file: &Path, taps: &[&Tap]) -> Result<
 }
 
 /// Reads a run.
-pub(super) fn record(campaign: &Campaign, files: &Files, run: &Run) -> Result<Recorded, InputError> {
+pub(super) fn record(campaign: &Campaign, files: &Files, run: &Run) -> Result<RunData, InputError> {
     let file = campaign.folder.join(&run.file);
     let recording = files.with(&file, &campaign.sources(run))?;
     // A slow curve needs no times.
@@ -85,7 +85,7 @@ pub(super) fn record(campaign: &Campaign, files: &Files, run: &Run) -> Result<Re
             Ok(channel) if run.test.is_curve() => channels.push(channel.up_to_its_last_value()),
             Ok(channel) => channels.push(channel),
             Err(error) if recording.has(&tap.source) => problems.extend(error.problems),
-            Err(error) => missing.extend(error.problems.into_iter().map(|problem| Missing {
+            Err(error) => missing.extend(error.problems.into_iter().map(|problem| MissingChannel {
                 name: tap.name.clone(),
                 problem,
             })),
@@ -96,7 +96,7 @@ pub(super) fn record(campaign: &Campaign, files: &Files, run: &Run) -> Result<Re
     }
     InputError::unless_empty(problems, Some(()))?;
     let together = Together::new(&file, &channels, span, run.test.sample_rate())?;
-    Ok(Recorded {
+    Ok(RunData {
         run: run.name.clone(),
         start: together.grid.start - span.zero.unwrap_or(0.0),
         rate: together.grid.rate,

@@ -10,7 +10,7 @@ use crate::response::Response;
 use crate::response::parameters::Values;
 use crate::response::resonance;
 use crate::roles::{RoleError, Roles};
-use crate::simulate::{Kept, Ride};
+use crate::simulate::{RecordedSignals, Ride};
 
 /// A group of metrics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -152,9 +152,9 @@ impl<'a, M: Model + ?Sized> Metrics<'a, M> {
     }
 
     /// The signals of a ride that the metrics need.
-    pub fn kept(&self) -> Kept {
+    pub fn kept(&self) -> RecordedSignals {
         let is_measured = |output: usize| self.accelerations.iter().any(|own| own.output == output);
-        Kept {
+        RecordedSignals {
             outputs: (0..self.model.about().outputs.len()).map(is_measured).collect(),
             force: false,
             area: false,

@@ -7,9 +7,9 @@ use rayon::prelude::*;
 
 use super::course::Course;
 use super::name::{Measure, Metric, What, metrics};
-use super::record::{Impact, Seen};
+use super::record::{FilteredRecord, Impact};
 use super::vibration;
-use super::watched::Watched;
+use super::watched::WithTravel;
 use crate::campaign::RoleNames;
 use crate::model::{About, Model, Quantity, Signal, SignalKind};
 use crate::response::parameters::Values;
@@ -17,13 +17,13 @@ use crate::response::resonance;
 use crate::response::signal::driver;
 use crate::roles::Roles;
 use crate::simulate::{
-    Car, Kept, Ridden, Ride, Settings, SimulateError, Tangent, Variant, ride, rides_abreast, tangent,
+    Car, RecordedSignals, Ride, RideCase, Settings, SimulateError, Tangent, Variant, ride, rides_abreast, tangent,
 };
 use crate::tyre::Tyre;
 
 /// The roads and channels on which the metrics of a model are computed.
 pub struct Ground<'a> {
-    model: Watched<'a>,
+    model: WithTravel<'a>,
     /// The tyre and its static load, N; `None` if no road is driven.
     tyre: Option<(Tyre, f64)>,
     courses: Vec<Course>,
@@ -94,7 +94,7 @@ impl<'a> Ground<'a> {
         tyre: Option<(Tyre, f64)>,
         courses: Vec<Course>,
     ) -> Self {
-        let model = Watched::new(model, names);
+        let model = WithTravel::new(model, names);
         let vibrations = vibration::of(&model, values.as_slice(), &[]).len();
         let mut metrics = metrics(model.about(), vibrations);
         metrics.retain(|metric| tyre.is_some() || !metric.what.is_ridden());
@@ -248,7 +248,7 @@ impl<'a> Ground<'a> {
                 (What::Ride(signal, measure), Some(course)) => {
                     let place = courses.iter().position(|own| *own == course);
                     let signals = &ridden[place.expect("every course is ridden")];
-                    let seen = Seen::new(measure, &signals.values[signal], signals.rate, &signals.impact);
+                    let seen = FilteredRecord::new(measure, &signals.values[signal], signals.rate, &signals.impact);
                     let slope = |slopes: &Vec<Vec<f64>>| seen.slope(&slopes[signal], &signals.impact);
                     (seen.value(), signals.slopes.iter().map(slope).collect())
                 }
@@ -270,7 +270,7 @@ impl<'a> Ground<'a> {
         let ridden = runs
             .iter()
             .map(|&(values, course)| (values.as_slice(), self.courses[course].drive()));
-        let ridden: Vec<Ridden<'_>> = ridden.collect();
+        let ridden: Vec<RideCase<'_>> = ridden.collect();
         let done = |number: usize, ride: Result<Ride, SimulateError>| {
             let course = &self.courses[runs[number].1];
             found[number] = Some(self.signals(course, ride.map(|ride| self.tangent_of(ride))));
@@ -280,10 +280,10 @@ impl<'a> Ground<'a> {
     }
 
     /// The outputs that readings need, and the one that determines the onset of an impact.
-    fn kept(&self) -> Kept {
+    fn kept(&self) -> RecordedSignals {
         let is_kept = |output: usize| self.reads(output) || self.wheel == Some(output);
         let about = self.car_model().about();
-        Kept {
+        RecordedSignals {
             outputs: (0..about.outputs.len()).map(is_kept).collect(),
             force: self.reads(self.model.about().outputs.len()),
             area: false,

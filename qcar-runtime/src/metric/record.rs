@@ -45,13 +45,13 @@ impl Impact {
 }
 
 /// A record as a metric uses it: filtered and cut.
-pub(super) struct Seen {
+pub(super) struct FilteredRecord {
     measure: Measure,
     samples: Vec<f64>,
     rate: f64,
 }
 
-impl Seen {
+impl FilteredRecord {
     /// Filters and cuts a record at `rate` (Hz).
     pub fn new(measure: Measure, record: &[f64], rate: f64, impact: &Impact) -> Self {
         Self {
@@ -131,9 +131,9 @@ mod tests {
             Measure::Variation,
             Measure::Excursion,
         ] {
-            let value = |part| Seen::new(measure, &record(part), 1000.0, &impact).value();
+            let value = |part| FilteredRecord::new(measure, &record(part), 1000.0, &impact).value();
             let difference = (value(1e-5) - value(-1e-5)) / 2e-5;
-            let found = Seen::new(measure, &record(0.0), 1000.0, &impact).slope(&slope, &impact);
+            let found = FilteredRecord::new(measure, &record(0.0), 1000.0, &impact).slope(&slope, &impact);
             assert!(
                 (found - difference).abs() < 1e-7 * value(0.0).max(1.0),
                 "{measure:?}: {found} {difference}"

@@ -13,14 +13,14 @@ pub const TRAVEL: &str = "suspension_travel";
 
 /// A model with one output more: the height of the wheel over the body relative to rest, m. It is not added if the
 /// structure of the model does not determine wheel and body.
-pub struct Watched<'a> {
+pub struct WithTravel<'a> {
     inner: &'a dyn Model,
     about: About,
     /// Indices of the states that are the positions of wheel and body.
     travel: Option<[usize; 2]>,
 }
 
-impl<'a> Watched<'a> {
+impl<'a> WithTravel<'a> {
     /// Adds the output to a model.
     pub fn new(inner: &'a dyn Model, names: &RoleNames) -> Self {
         let mut about = inner.about().clone();
@@ -72,7 +72,7 @@ fn travel(about: &About, names: &RoleNames) -> Option<[usize; 2]> {
     Some([place(&on_rig.wheel)?, place(&on_rig.body)?])
 }
 
-impl Model for Watched<'_> {
+impl Model for WithTravel<'_> {
     fn about(&self) -> &About {
         &self.about
     }

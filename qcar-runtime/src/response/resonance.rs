@@ -19,8 +19,8 @@ const BAND: [f64; 2] = [0.5, 50.0];
 /// Number of lines in the band: closer than the width of a peak with a damping ratio of 0.01.
 const LINES: usize = 340;
 /// Number of lines in each refinement between the neighbours of the largest, and number of refinements.
-const CLOSER: usize = 9;
-const LOOKS: usize = 6;
+const REFINED_LINES: usize = 9;
+const REFINEMENTS: usize = 6;
 
 /// The response over the whole band, from which the search for the peak of any ratio under this excitation starts.
 pub(crate) fn survey<'m, M: Model + ?Sized>(model: &'m M, values: &Values, excitation: usize) -> Response<'m, M> {
@@ -49,8 +49,8 @@ pub(crate) fn highest<M: Model + ?Sized>(
     let mut frequency = spaced(BAND, LINES);
     let mut value = between(survey, values, numerator, denominator).ok()?.value;
     let mut band = about_largest(&frequency, &value)?;
-    for _ in 0..LOOKS {
-        frequency = spaced(band, CLOSER);
+    for _ in 0..REFINEMENTS {
+        frequency = spaced(band, REFINED_LINES);
         value = ratio(&frequency, false)?.value;
         band = about_largest(&frequency, &value)?;
     }

@@ -8,14 +8,14 @@ use std::slice;
 use super::car::Car;
 use super::failure::SimulateError;
 use super::formation::Formation;
-use super::recorder::Kept;
+use super::recorder::RecordedSignals;
 use super::ride::{Drive, Journey, Ride};
 use super::settings::Settings;
 use crate::model::{LANES, Model};
 use crate::solver::ExponentialAdams;
 
 /// Parameters of a car, and the road and speed of its ride.
-pub type Ridden<'a> = (&'a [f64], Drive<'a>);
+pub type RideCase<'a> = (&'a [f64], Drive<'a>);
 
 /// Simulates rides of cars that differ from one by their parameters, each as [`ride`](super::ride()) does; `done` receives
 /// each with its number as soon as it is complete. Signals that are not `kept` are empty.
@@ -23,9 +23,9 @@ pub type Ridden<'a> = (&'a [f64], Drive<'a>);
 /// Each ride takes a lane as soon as one is free, so that memory does not grow with their number.
 pub fn rides_abreast<'a, M: Model + ?Sized>(
     car: &Car<'a, M>,
-    rides: &[Ridden<'a>],
+    rides: &[RideCase<'a>],
     settings: &Settings,
-    kept: &Kept,
+    kept: &RecordedSignals,
     done: impl FnMut(usize, Result<Ride, SimulateError>),
 ) {
     let mut abreast = Abreast {
@@ -48,9 +48,9 @@ pub fn rides_abreast<'a, M: Model + ?Sized>(
 struct Abreast<'r, 'a, M: ?Sized, D> {
     car: &'r Car<'a, M>,
     settings: &'r Settings,
-    kept: &'r Kept,
+    kept: &'r RecordedSignals,
     done: D,
-    waiting: Enumerate<slice::Iter<'r, Ridden<'a>>>,
+    waiting: Enumerate<slice::Iter<'r, RideCase<'a>>>,
     /// Buffers of completed records, for further rides.
     rooms: Vec<Vec<f64>>,
     /// Parameters of the last ride that was started, and its exponential method: rides of the same car often follow

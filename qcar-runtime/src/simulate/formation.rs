@@ -117,7 +117,7 @@ impl<'a, M: Model + ?Sized> Formation<'a, M> {
 
     /// Predicts the states of all lanes at the ends of their steps.
     pub fn foresee(&mut self) {
-        over_lanes(Foresight(self));
+        over_lanes(Predictor(self));
     }
 
     /// Predicted position of the wheel's centre of a lane, m.
@@ -174,9 +174,9 @@ impl<'a, M: Model + ?Sized> Formation<'a, M> {
 }
 
 /// Prediction: states, wheels, and the contacts of wheels on a single straight piece of road.
-struct Foresight<'f, 'a, M: ?Sized>(&'f mut Formation<'a, M>);
+struct Predictor<'f, 'a, M: ?Sized>(&'f mut Formation<'a, M>);
 
-impl<M: Model + ?Sized> Loops for Foresight<'_, '_, M> {
+impl<M: Model + ?Sized> Loops for Predictor<'_, '_, M> {
     type Result = ();
 
     #[inline(always)]

@@ -34,7 +34,7 @@ pub(super) struct Recorder<'a, M: ?Sized> {
 
 /// Which signals of a ride are kept.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Kept {
+pub struct RecordedSignals {
     /// For each output of the model, true if it is kept.
     pub outputs: Vec<bool>,
     /// True if the force of the tyre is kept.
@@ -43,7 +43,7 @@ pub struct Kept {
     pub area: bool,
 }
 
-impl Kept {
+impl RecordedSignals {
     /// All signals.
     pub fn all(about: &About) -> Self {
         Self {
@@ -64,7 +64,7 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
         shortcut: Option<Shortcut>,
         (grid, room): (Grid, Vec<f64>),
         about: &About,
-        kept: &Kept,
+        kept: &RecordedSignals,
     ) -> Self {
         let (states, outputs) = (about.states.len(), &about.outputs);
         let of_output = |output: usize| kept.outputs[output].then_some(output);

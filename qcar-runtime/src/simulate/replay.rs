@@ -24,7 +24,7 @@ use crate::model::{About, LANES, Model, Quantity, SignalKind, StateKind};
 use crate::response::signal::{SignalError, missing, output_of};
 use initial::FreeResponse;
 use input::rows;
-use sets::{Alone, Sets, Several};
+use sets::{Alone, ModelSets, Sets};
 use stepper::Stepper;
 
 /// Source of a sensor's signal during integration.
@@ -118,7 +118,7 @@ impl<'a> Replay<'a> {
         let some = |p: &[Vec<f64>]| match p {
             [one] => vec![self.again(&mut Alone::new(self.model, one), begin, other).signals],
             several => {
-                let replayed = self.again(&mut Several::new(self.model, several), begin, other);
+                let replayed = self.again(&mut ModelSets::new(self.model, several), begin, other);
                 sets::apart(replayed.signals, several.len())
             }
         };

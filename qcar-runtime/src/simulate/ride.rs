@@ -2,7 +2,7 @@
 
 use super::car::Car;
 use super::failure::{SimulateError, positive};
-use super::recorder::{Kept, Recorder};
+use super::recorder::{RecordedSignals, Recorder};
 use super::rolling::Rolling;
 use super::sampling::{AntiAlias, Grid};
 use super::settings::{Integrator, Settings, judged};
@@ -75,7 +75,7 @@ pub fn ride<M: Model + ?Sized>(
     drive: &Drive<'_>,
     settings: &Settings,
 ) -> Result<Ride, SimulateError> {
-    let kept = Kept::all(car.model.about());
+    let kept = RecordedSignals::all(car.model.about());
     let mut journey = Journey::new(car, drive, settings, |grid| (grid, Vec::new()), &kept, None)?;
     journey.finish()?;
     Ok(journey.ride().0)
@@ -90,7 +90,7 @@ pub fn end_of_ride<M: Model + ?Sized>(
     drive: &Drive<'_>,
     settings: &Settings,
 ) -> Result<(Vec<f64>, Effort), SimulateError> {
-    let kept = Kept::all(car.model.about());
+    let kept = RecordedSignals::all(car.model.about());
     let unrecorded = |grid: Grid| (grid.without_points(), Vec::new());
     let mut journey = Journey::new(car, drive, settings, unrecorded, &kept, None)?;
     journey.finish()?;
@@ -123,7 +123,7 @@ impl<'a, M: Model + ?Sized> Journey<'a, M> {
         drive: &Drive<'a>,
         settings: &Settings,
         recorded: impl FnOnce(Grid) -> (Grid, Vec<f64>),
-        kept: &Kept,
+        kept: &RecordedSignals,
         same: Option<&ExponentialAdams<2>>,
     ) -> Result<Self, SimulateError> {
         let (tyre, about) = (car.rolling_tyre(), car.model.about());

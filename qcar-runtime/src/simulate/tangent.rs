@@ -55,7 +55,7 @@ pub fn tangent<M: Model + ?Sized>(
         states.extend(x.iter().zip(y).map(|(x, y)| (x - y) / (2.0 * STEP)));
         moved.push([forward, backward]);
     }
-    let mut varied = Varied::new(rolling, moved, about.states.len(), about.outputs.len(), grid);
+    let mut varied = PerturbedModels::new(rolling, moved, about.states.len(), about.outputs.len(), grid);
     varied.rest(span.0, &states);
     let longest_step = drive.longest_step(&tyre);
     let (Method::Adaptive(relative) | Method::Fixed(relative)) = settings.method;
@@ -80,7 +80,7 @@ fn along(from: &[f64], direction: &[f64], step: f64) -> Vec<f64> {
 }
 
 /// A rolling model, and for each direction the models with parameters one step forward and one step backward.
-struct Varied<'a, M: ?Sized> {
+struct PerturbedModels<'a, M: ?Sized> {
     rolling: Rolling<'a, M>,
     moved: Vec<[Rolling<'a, M>; 2]>,
     /// Number of states of the model.
@@ -103,7 +103,7 @@ struct Neighbour {
     force: f64,
 }
 
-impl<'a, M: Model + ?Sized> Varied<'a, M> {
+impl<'a, M: Model + ?Sized> PerturbedModels<'a, M> {
     fn new(
         rolling: Rolling<'a, M>,
         moved: Vec<[Rolling<'a, M>; 2]>,
@@ -168,7 +168,7 @@ fn vertical(contact: Option<Contact>) -> f64 {
     contact.map_or(0.0, |contact| contact.force[0])
 }
 
-impl<M: Model + ?Sized> System for Varied<'_, M> {
+impl<M: Model + ?Sized> System for PerturbedModels<'_, M> {
     fn derivative(&mut self, t: f64, z: &[f64], dz: &mut [f64]) {
         let (x, sensitivities) = z.split_at(self.states);
         let (rates, signals) = dz.split_at_mut(z.len());

@@ -166,7 +166,7 @@ struct Variation<'a, M: ?Sized> {
     x: Vec<f64>,
     /// The states on which the contact depends, each with a small change for a difference quotient.
     touching: Vec<(usize, f64)>,
-    contact: Touching,
+    contact: ContactInputs,
     /// Change of the contact's inputs in the last step.
     grew: [f64; GIVEN],
     /// Number of parameters, rounded up to a multiple of the lanes.
@@ -184,13 +184,13 @@ struct Variation<'a, M: ?Sized> {
 }
 
 /// Inputs from a contact at a point.
-struct Touching {
+struct ContactInputs {
     given: [f64; GIVEN],
     /// Derivatives by the states on which they depend.
     by_state: Vec<(usize, [f64; GIVEN])>,
 }
 
-impl Touching {
+impl ContactInputs {
     fn new<M: Model + ?Sized>(rolling: &Rolling<'_, M>, touching: &[(usize, f64)], t: f64, x: &mut [f64]) -> Self {
         let given = rolling.given(t, x);
         let by_state = touching.iter().map(|&(state, change)| {
@@ -249,7 +249,7 @@ impl<'a, M: Model + ?Sized> Variation<'a, M> {
         }
         let signals = axle.c.nrows() * lanes;
         let touching = rolling.touching();
-        let contact = Touching::new(&rolling, &touching, time, &mut x);
+        let contact = ContactInputs::new(&rolling, &touching, time, &mut x);
         let mut variation = Self {
             of_contact: hold.of_end() * pushed,
             tape: Tape::new(grid, signals),
@@ -349,7 +349,7 @@ impl<'a, M: Model + ?Sized> Variation<'a, M> {
             .step(1, &self.x, [&acts(was), &acts(foreseen)], &mut self.next);
         std::mem::swap(&mut self.x, &mut self.next);
         self.time += self.spacing;
-        self.contact = Touching::new(&self.rolling, &self.touching, self.time, &mut self.x);
+        self.contact = ContactInputs::new(&self.rolling, &self.touching, self.time, &mut self.x);
         let found = self.contact.given;
         let off = self.solver() * Vector4::from_fn(|axis, _| found[axis] - foreseen[axis]);
         for (state, x) in self.x.iter_mut().enumerate() {

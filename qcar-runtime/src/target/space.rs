@@ -82,7 +82,7 @@ const FURTHER_ONES: usize = 4;
 type Sides = Vec<[f64; 2]>;
 
 /// A drawn design.
-struct Drawn {
+struct RandomDesign {
     places: Vec<f64>,
     /// Violation of each limit and coupling; `None` without results.
     excess: Option<Vec<f64>>,
@@ -130,7 +130,7 @@ pub fn space(task: &Task<'_>, known: &[Vec<f64>], settings: Settings, on_progres
                 break;
             }
             None if task.designs.is_certain() => {
-                let inside: Vec<Drawn> = drawn.into_iter().filter(|own| holds(&sides, &own.places)).collect();
+                let inside: Vec<RandomDesign> = drawn.into_iter().filter(|own| holds(&sides, &own.places)).collect();
                 sides = trimmed(&sides, &inside).unwrap_or_else(|| shrunk(&sides));
             }
             // A random bad result says little about its position.
@@ -194,7 +194,7 @@ fn probably_enough(confirming: usize, probability: f64) -> f64 {
 
 /// The last step from a box to a larger one, which contains `drawn`, at which enough of the designs inside are good;
 /// `None` if there are not enough in the box itself.
-fn largest_within(sides: &Sides, around: &Sides, drawn: &[Drawn], enough: f64) -> Option<usize> {
+fn largest_within(sides: &Sides, around: &Sides, drawn: &[RandomDesign], enough: f64) -> Option<usize> {
     (0..=STEPS).rev().find(|&step| {
         let sides = between(sides, around, step);
         let inside = || drawn.iter().filter(|own| holds(&sides, &own.places));
@@ -217,7 +217,7 @@ fn start(task: &Task<'_>, known: &[Vec<f64>], random: &mut SplitMix, samples: us
     let all = vec![[0.0, 1.0]; task.knobs.len()];
     let mut drawn = draw(task, &all, 2 * samples, random);
     drawn.extend(known.iter().map(|design| drawn_at(task, task.places(design))));
-    let inside = |own: &Drawn| {
+    let inside = |own: &RandomDesign| {
         let excess = own.excess.as_ref().expect("a good design has results");
         excess.iter().copied().fold(f64::NEG_INFINITY, f64::max)
     };
@@ -255,7 +255,7 @@ fn inside(sides: &Sides, count: usize, random: &mut SplitMix) -> Vec<Vec<f64>> {
 }
 
 /// Random designs with their certain results.
-fn draw(task: &Task<'_>, sides: &Sides, count: usize, random: &mut SplitMix) -> Vec<Drawn> {
+fn draw(task: &Task<'_>, sides: &Sides, count: usize, random: &mut SplitMix) -> Vec<RandomDesign> {
     let points = inside(sides, count, random);
     let designs: Vec<Vec<f64>> = points.iter().map(|places| task.design(places)).collect();
     let results = points.into_iter().zip(task.designs.values_of_all(&designs));
@@ -265,7 +265,7 @@ fn draw(task: &Task<'_>, sides: &Sides, count: usize, random: &mut SplitMix) -> 
 }
 
 /// Random designs with random results.
-fn turned_out(task: &Task<'_>, sides: &Sides, count: usize, random: &mut SplitMix) -> Vec<Drawn> {
+fn turned_out(task: &Task<'_>, sides: &Sides, count: usize, random: &mut SplitMix) -> Vec<RandomDesign> {
     if task.designs.is_certain() {
         return draw(task, sides, count, random);
     }
@@ -280,22 +280,22 @@ fn turned_out(task: &Task<'_>, sides: &Sides, count: usize, random: &mut SplitMi
         .collect()
 }
 
-fn drawn_at(task: &Task<'_>, places: Vec<f64>) -> Drawn {
+fn drawn_at(task: &Task<'_>, places: Vec<f64>) -> RandomDesign {
     let values = task.designs.values(&task.design(&places));
     judged_at(task, places, values)
 }
 
-fn judged_at(task: &Task<'_>, places: Vec<f64>, values: Option<Vec<f64>>) -> Drawn {
+fn judged_at(task: &Task<'_>, places: Vec<f64>, values: Option<Vec<f64>>) -> RandomDesign {
     let design = task.design(&places);
     let excess = values.map(|values| task.excesses(&design, &values));
     let good = excess.as_ref().is_some_and(|excess| task.holds(excess));
-    Drawn { places, excess, good }
+    RandomDesign { places, excess, good }
 }
 
 /// The box without the bad designs: of boxes around several good ones, the one with the most good designs and the
 /// largest volume. `None` if all are bad.
-fn trimmed(sides: &Sides, drawn: &[Drawn]) -> Option<Sides> {
-    let (good, bad): (Vec<&Drawn>, Vec<&Drawn>) = drawn.iter().partition(|own| own.good);
+fn trimmed(sides: &Sides, drawn: &[RandomDesign]) -> Option<Sides> {
+    let (good, bad): (Vec<&RandomDesign>, Vec<&RandomDesign>) = drawn.iter().partition(|own| own.good);
     if bad.is_empty() {
         return Some(sides.clone());
     }
@@ -309,19 +309,19 @@ fn trimmed(sides: &Sides, drawn: &[Drawn]) -> Option<Sides> {
 
 /// The box around an anchor with each bad design cut off, along the knob that loses the fewest good designs, then the
 /// least volume.
-fn without(sides: &Sides, anchor: &[f64], good: &[&Drawn], bad: &[&Drawn]) -> Sides {
+fn without(sides: &Sides, anchor: &[f64], good: &[&RandomDesign], bad: &[&RandomDesign]) -> Sides {
     let mut sides = sides.clone();
-    let mut order: Vec<&&Drawn> = bad.iter().collect();
-    let distance = |own: &Drawn| own.places.iter().zip(anchor).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+    let mut order: Vec<&&RandomDesign> = bad.iter().collect();
+    let distance = |own: &RandomDesign| own.places.iter().zip(anchor).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
     order.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
     for bad in order {
         if !holds(&sides, &bad.places) {
             continue;
         }
-        let kept: Vec<&&Drawn> = good.iter().filter(|own| holds(&sides, &own.places)).collect();
+        let kept: Vec<&&RandomDesign> = good.iter().filter(|own| holds(&sides, &own.places)).collect();
         let cuts = (0..sides.len()).filter(|&k| bad.places[k] != anchor[k]).map(|k| {
             let at = cut_at(&kept, bad.places[k], anchor[k], k);
-            let is_lost = |own: &&&&Drawn| (own.places[k] - at) * (anchor[k] - at) < 0.0;
+            let is_lost = |own: &&&&RandomDesign| (own.places[k] - at) * (anchor[k] - at) < 0.0;
             let lost = kept.iter().filter(is_lost).count();
             let [low, high] = sides[k];
             let left = if anchor[k] < at { at - low } else { high - at };
@@ -336,7 +336,7 @@ fn without(sides: &Sides, anchor: &[f64], good: &[&Drawn], bad: &[&Drawn]) -> Si
 }
 
 /// Position of a cut between a bad design and the good ones on the anchor's side: halfway to the nearest.
-fn cut_at(good: &[&&Drawn], bad: f64, anchor: f64, knob: usize) -> f64 {
+fn cut_at(good: &[&&RandomDesign], bad: f64, anchor: f64, knob: usize) -> f64 {
     let inside = good
         .iter()
         .map(|own| own.places[knob])
@@ -358,7 +358,7 @@ fn log_volume(sides: &Sides) -> f64 {
     sides.iter().map(|[low, high]| (high - low).max(1e-12).ln()).sum()
 }
 
-fn judged(task: &Task<'_>, sides: &Sides, drawn: &[Drawn], evaluated: usize) -> Space {
+fn judged(task: &Task<'_>, sides: &Sides, drawn: &[RandomDesign], evaluated: usize) -> Space {
     let count = drawn.len();
     let good = drawn.iter().filter(|own| own.good).count();
     let met = |at: usize| {

@@ -6,7 +6,7 @@ use crate::bytes::{Bytes, Number, text};
 use crate::error::{Fault, Read};
 
 /// An object as a segment describes it.
-pub(super) struct Described {
+pub(super) struct SegmentObject {
     pub(super) path: String,
     pub(super) index: Option<Index>,
     pub(super) properties: HashMap<String, Property>,
@@ -147,7 +147,7 @@ pub(super) fn buffer<'a>(used: &[(usize, Index)], chunk: &Bytes<'a>, number: u32
 }
 
 /// Reads an object from byte `at` on and moves `at` past it. `known` gives the index it had before.
-pub(super) fn object(from: &Bytes, at: &mut u64, known: &dyn Fn(&str) -> Option<Index>) -> Read<Described> {
+pub(super) fn object(from: &Bytes, at: &mut u64, known: &dyn Fn(&str) -> Option<Index>) -> Read<SegmentObject> {
     let path = string(from, at)?;
     let start = *at;
     let kind = step_u32(from, at)?;
@@ -165,7 +165,7 @@ pub(super) fn object(from: &Bytes, at: &mut u64, known: &dyn Fn(&str) -> Option<
         let value = property(from, at)?;
         properties.extend(value.map(|value| (name, value)));
     }
-    Ok(Described {
+    Ok(SegmentObject {
         path,
         index,
         properties,

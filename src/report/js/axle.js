@@ -2,7 +2,7 @@
 
 const LANE = { z: 182, x: 88 };
 const STEP = { z: 112, x: 330 };
-// From one element of a link to the next.
+// Distance between neighbouring elements of a link.
 const BESIDE = 22;
 const BAR = { z: 36, x: 112 };
 
@@ -141,7 +141,7 @@ function drawPoint({ own, level, lanes }, { axis, along, lane, isNew }) {
   return svg('g', { class: kind }, svg('rect', { ...box, rx: 3 }), text);
 }
 
-// What is prescribed is drawn as a hatched line.
+// A prescribed motion is drawn as a hatched line.
 function isLine({ kind }) {
   return kind === 'road' || kind === 'motion';
 }

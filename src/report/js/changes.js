@@ -1,4 +1,4 @@
-// How one model becomes another: the lines that go, and those that come.
+// The difference between two models: removed and added lines.
 
 function changeLine(kind, sign, heading, text) {
   return h(

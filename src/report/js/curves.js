@@ -1,4 +1,4 @@
-// What the K&C curves say, beside the start values of the campaign.
+// The gradients of the K&C curves, with the start values of the campaign.
 
 function curves({ kc, loops }) {
   if (!kc.length) return null;

@@ -1,4 +1,4 @@
-// What is missing: where the gap is, what explains it, how the model changes, and what else was considered.
+// The missing effect: where the residual is, which effects explain it, how the model changes, and the rivals.
 
 function discovery(data) {
   const { discover, kappa, changes } = data;
@@ -31,7 +31,7 @@ function discovery(data) {
   };
 }
 
-// The columns of the models that there are.
+// The columns of the baseline and, if there is one, of the extended model.
 function bothModels(effects) {
   return [['baseline', 'number'], ...(effects.length ? [['extended', 'number']] : [])];
 }
@@ -82,7 +82,7 @@ function candidateTable({ candidates, probability }) {
   );
 }
 
-// So many are listed.
+// Largest number of rows in a table of residuals.
 const LISTED = 24;
 
 function strongest(tiles) {
@@ -112,7 +112,7 @@ function strongest(tiles) {
   );
 }
 
-// κ of a place: the dynamic stiffness that would have to be there.
+// κ of a place: the dynamic stiffness that would have to be added there.
 function kappaPart(all) {
   const shown = picker('kappa', {
     label: 'κ at',

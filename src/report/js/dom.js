@@ -55,12 +55,12 @@ function table(caption, columns, rows, attributes = {}) {
   );
 }
 
-// A figure has a name for who cannot see it, and announces itself: a page is whole when every figure is drawn.
+// A figure has a name for screen readers and registers itself: a page is complete when every figure is drawn.
 function figure(kind, name, ...children) {
   return h('figure', { 'data-figure': kind, 'aria-label': name }, children);
 }
 
-// One whose name stands below it.
+// A figure with its name as caption below it.
 function captioned(kind, name, ...children) {
   return figure(kind, name, children, h('figcaption', {}, name));
 }
@@ -70,7 +70,7 @@ function drawn(element) {
   if (owner) owner.setAttribute('data-drawn', '');
 }
 
-// A section whose figures are drawn with it.
+// A section whose figures need no drawing: they are complete at once.
 function drawAll(element) {
   return { element, draw: () => element.querySelectorAll('figure').forEach((own) => drawn(own)) };
 }
@@ -81,7 +81,7 @@ function details(summary, ...children) {
   return fill(part, {}, [h('summary', { onclick: clicked }, summary), children]);
 }
 
-// `z_wheel` as a letter or word with its index, in whatever surrounds it.
+// `z_wheel` as a letter or word with an index, also within other text.
 function formula(text) {
   return text.split(/([A-Za-z]+\p{M}*_\w+)/u).map((part, at) => {
     if (at % 2 === 0) return part;
@@ -90,7 +90,7 @@ function formula(text) {
   });
 }
 
-// The text of a stage of equations: headings stand at the margin.
+// The printed equations: lines without indentation are headings.
 function equationSheet(text) {
   const lines = text.split('\n').filter((line) => line.trim());
   const parts = lines.map((line) => {
@@ -101,7 +101,7 @@ function equationSheet(text) {
   return h('div', { class: 'equations', tabindex: 0, role: 'region', 'aria-label': 'Equations' }, parts);
 }
 
-// One of the few numbers at the head of a report.
+// One of the key numbers at the top of a report.
 function answer(title, ...lines) {
   return h('div', { class: 'answer' }, h('h3', {}, title), lines);
 }

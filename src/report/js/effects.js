@@ -1,4 +1,4 @@
-// Each effect that was found, with its rivals; the laws that were learned where none was; and what would have been seen.
+// Each effect that was found, with its rivals; if none was found, the learned laws or the detection limits.
 
 function effectPart(effect, effects) {
   return h(
@@ -51,7 +51,7 @@ function rivalTable(rivals) {
   );
 }
 
-// A law says what the axle does, not why.
+// A law describes the axle's behaviour without a physical cause.
 function learnedPart({ laws, explained, gap }) {
   const judged = gap.held_out.before === null ? gap.fit : gap.held_out;
   return h(
@@ -71,7 +71,7 @@ function learnedPart({ laws, explained, gap }) {
   );
 }
 
-// Where nothing is missing: an effect whose usual size is below the limit may be there, unseen.
+// If no effect is missing: an effect whose usual size is below the detection limit may be present without being seen.
 function visiblePart(visible) {
   if (!visible.length) return null;
   const sizes = ({ usual }) => Object.entries(usual).map(([name, value]) => `${name} ${number(value)}`);

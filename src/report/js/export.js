@@ -1,4 +1,4 @@
-// What a table or figure holds, for a spreadsheet: to the clipboard, or as a file.
+// Copies the data of a table or figure to the clipboard, or saves them as a file, for a spreadsheet.
 
 // Buttons for rows of text, the first of which are headings.
 function exports(name, rows) {
@@ -17,7 +17,7 @@ function exports(name, rows) {
   );
 }
 
-// A number as programs read it: no thin spaces, a plain minus sign, powers of ten with an e.
+// A number in machine-readable form: no thin spaces, an ASCII minus sign, powers of ten with an e.
 function machine(cell) {
   return cell
     .replace(/\u2212/g, '-')

@@ -1,6 +1,6 @@
-// Numbers with the digits and the unit that a person would write.
+// Numbers with readable digits and units.
 
-// So many significant digits, and no exponent where a plain number is short.
+// A number with the given significant digits, without an exponent if it is short enough.
 function number(value, digits = 3) {
   if (value === null || value === undefined || !Number.isFinite(value)) return '–';
   const size = Math.abs(value);
@@ -17,7 +17,7 @@ function number(value, digits = 3) {
   );
 }
 
-// The same without zeros at the end: for what is given, not measured.
+// The same without trailing zeros, for given values as opposed to measured ones.
 function plain(value, digits = 5) {
   return number(
     Number(value.toPrecision(digits)),
@@ -46,10 +46,10 @@ function signed(share) {
   return `${share > 0 ? '+' : ''}${Math.abs(share) < 1 ? minus(small) : number(100 * share)}\u202f%`;
 }
 
-// Digits behind the point that are still read.
+// Largest number of decimal places.
 const MOST_PLACES = 6;
 
-// `value ± error` with as many digits as the error allows; both with one power of ten where a plain number is long.
+// `value ± error` with as many digits as the error justifies; with a common power of ten if the numbers would be long.
 function measured(value, error, unit) {
   const scaled = inUnit(value, unit);
   if (error === null || !Number.isFinite(error) || error <= 0) return quantity(value, unit, 4);
@@ -70,7 +70,7 @@ function measured(value, error, unit) {
   return withUnit(text, scaled.unit);
 }
 
-// `coulomb_friction` as people say it.
+// `coulomb_friction` with spaces for underscores.
 function words(name) {
   return name.replace(/_/g, ' ');
 }
@@ -80,7 +80,7 @@ function channelName(name) {
   return words(name.replace(/_to_/, ' → '));
 }
 
-// `rig/sweep_025.csv.gz` without what all runs share.
+// `rig/sweep_025.csv.gz` without folder and ending.
 function runName(file) {
   return file
     .split('/')

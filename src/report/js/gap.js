@@ -48,7 +48,7 @@ const KINDS = [
   ...['cycle1', 'cycle2', 'cycle3'],
 ];
 
-// What runs along the bands of each kind, and its unit.
+// The quantity along the bands of each kind of run, and its unit.
 const ALONG = {
   harmonic: ['frequency', 'Hz'],
   time: ['time', 's'],
@@ -106,7 +106,7 @@ function byRow(a, b) {
   );
 }
 
-// What identifies a run of this kind: its level, over a cleat also its speed, for a record its name.
+// The label of a run: its level, for a cleat run also its speed, for a time history its name.
 function runText({ kind, level, speed, run }) {
   if (kind === 'time') return runName(run);
   const driven = given(level, kind === 'harmonic' ? 'm/s' : 'm', 3);

@@ -36,7 +36,7 @@ function drawGrid(runs, sensor, place) {
   return [];
 }
 
-// s; what is left of a record looks alike in all.
+// Shown duration, s; the rest of a record looks alike in all runs.
 const GRID_VIEW = [-0.05, 0.6];
 
 function gridCell(run, sensor, column) {

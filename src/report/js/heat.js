@@ -28,7 +28,7 @@ function heatMap([role, caption], tiles, readout) {
   return fill(element, {}, [exports(caption, () => tileRows(scene.sorted))]);
 }
 
-// Where rows and tiles go.
+// Positions of rows and tiles.
 function heatScene(tiles) {
   const rowOf = (tile) => `${tile.channel} ${runText(tile)}`;
   const sorted = [...tiles].sort(byRow);
@@ -47,7 +47,7 @@ function heatScene(tiles) {
   return { sorted, rows, rowAt, cell, x, box, height: HEAT_AREA.top + rows.length * cell + HEAT_AREA.below };
 }
 
-// Where runs of one level lie over each other, the strongest part is on top.
+// If tiles of runs of one level overlap, the largest residual is on top.
 function heatTiles(role, tiles, { box }, say) {
   const sorted = [...tiles].sort((a, b) => a.strength - b.strength);
   return sorted.map((tile) =>
@@ -59,7 +59,7 @@ function heatTiles(role, tiles, { box }, say) {
   );
 }
 
-// A sensor stands beside the first of its runs.
+// The name of a sensor is next to the first of its runs.
 function heatRows({ rows, cell }) {
   const text = (x, at, said, anchor) =>
     svg('text', { x, y: HEAT_AREA.top + at * cell + cell - 5, 'text-anchor': anchor }, said);
@@ -83,7 +83,7 @@ function tileRows(tiles) {
   return [heads, ...tiles.map((tile) => [tile.channel, runText(tile), ...ends(tile), number(tile.strength)])];
 }
 
-// How far along the bands a value is.
+// Position of a value along the bands.
 function scale(tiles) {
   const low = Math.min(...tiles.map((tile) => tile.span[0]));
   const high = Math.max(...tiles.map((tile) => tile.span[1]));
@@ -91,7 +91,7 @@ function scale(tiles) {
   return (v) => (log ? Math.log(v / low) / Math.log(high / low) : (v - low) / (high - low));
 }
 
-// Round values along the bands.
+// Round values for the axis along the bands.
 function mapTicks(tiles) {
   if (!tiles.length) return [];
   const low = Math.min(...tiles.map((tile) => tile.span[0]));
@@ -104,7 +104,7 @@ function mapTicks(tiles) {
   return values.filter((v) => v >= low && v <= high);
 }
 
-// The arrow keys on a map: along a row, and to the nearest tile of the next one.
+// Arrow keys move along a row of the map, and to the nearest tile of the next row.
 function walk(map, { sorted, rows, rowAt, box }, marker, say) {
   const lines = rows.map((_, row) => sorted.filter((tile) => rowAt(tile) === row));
   const [at, bounded] = [[0, 0], (value, count) => Math.min(count - 1, Math.max(0, value))];

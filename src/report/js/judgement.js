@@ -1,10 +1,10 @@
-// The answer in sentences that say no more than is true.
+// The answer in sentences.
 
-// Beyond both, a sensor has more left than noise and calibration explain: percent of its signal, as in discovery's own
+// If the residual of a sensor is above both, noise and calibration do not explain it: percent of its signal, as in discovery's own
 // verdict, and standard deviations.
 const LARGE = { percent: 5, deviations: 2 };
 
-// A rival whose evidence is lower by less than this has at least a twentieth of the probability of the answer.
+// A rival whose log evidence is lower by less than this has at least a twentieth of the probability of the answer.
 const APART = Math.log(20);
 
 const LEFT_IN = {
@@ -16,7 +16,7 @@ const LEFT_IN = {
   kc_sine: 'K&C sines',
 };
 
-// What is left of each sensor by the model of the answer, the most first.
+// The residual of each sensor with the model of the answer, the largest first.
 function leftOver({ left, by_channel: deviations, effects }) {
   const side = effects.length ? 'after' : 'before';
   const parts = left.map((own) => ({
@@ -43,7 +43,7 @@ function lead({ summary, discover }) {
     : `Missing: ${names}${doubt}.`;
 }
 
-// What explains the runs as well as one of the effects of the answer, or better.
+// Rivals of the effects of the answer that are not distinguishable from them.
 function rivalsAlike({ effects }) {
   return effects.filter((effect) => !effect.one_of).flatMap(({ rivals }) => rivals.filter((own) => own.behind < APART));
 }
@@ -71,7 +71,7 @@ function consequence(discover, { verdict: kind }, likely) {
   }
 }
 
-// The fitted runs may call for no effect while others are predicted badly.
+// The fitted runs may show no effect although other runs are predicted badly.
 function unneeded(gap) {
   return gap.before > LARGE.deviations
     ? 'The fitted runs show no effect of the catalogue, but the model does not predict these runs.'
@@ -101,7 +101,7 @@ function nextBest(chosen) {
   return ` The next best explanation, ${words(rival.effect)} at ${words(rival.at)}, is ${odds(rival.behind)}${settled}.`;
 }
 
-// How much less probable what has so much less evidence is.
+// The probability relative to the answer of a rival whose log evidence is lower by `behind`.
 function odds(behind) {
   const power = Math.abs(behind) / Math.LN10;
   if (power < 0.05) return 'as probable';
@@ -109,7 +109,7 @@ function odds(behind) {
   return `${times} times ${behind > 0 ? 'less' : 'more'} probable`;
 }
 
-// The worst sensor, by what is left of its signal.
+// The sensor with the largest residual relative to its signal.
 function mostLeft(discover) {
   const [most] = leftOver(discover);
   if (!most) return '';
@@ -117,7 +117,7 @@ function mostLeft(discover) {
   return `Largest residual: ${most.text}, ${number(most.percent, 2)} % of the signal${noise}.`;
 }
 
-// The fit of the rig runs may fall while the model gets better.
+// The fit percentage of the rig runs may fall although the model improves.
 function fallingFit({ rig: ratios }) {
   const parts = ['fit', 'held_out'].flatMap((role) => {
     const own = ratios.filter((ratio) => ratio.role === role && ratio.quality_after);
@@ -140,18 +140,18 @@ function placed(effect) {
   return `${words(effect.name)} at ${words(effect.at)}`;
 }
 
-// Of several that the data cannot tell apart it is one.
+// The title of an effect. Those of a class are alternatives.
 function effectTitle(effect, effects) {
   if (!effect.one_of) return placed(effect);
   return `${effect === oneOf(effects) ? 'Either' : 'Or'} ${placed(effect)}`;
 }
 
-// The best of those.
+// The best member of the class.
 function oneOf(effects) {
   return effects.find((effect) => effect.one_of);
 }
 
-// What the extended model has beside the baseline; `null` where that is nothing.
+// The effects that the extended model adds to the baseline; `null` if there are none.
 function added(effects) {
   const own = effects.filter((effect) => !effect.one_of || effect === oneOf(effects));
   return own.length ? own.map(placed).join(' and ') : null;

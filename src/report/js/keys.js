@@ -1,4 +1,4 @@
-// A plot under the keyboard: arrows move the pointer, + and − zoom, 0 shows all again.
+// Keyboard control of a plot: arrows move the pointer, + and − zoom, 0 shows everything.
 
 const HINT = 'Arrow keys move the pointer, plus and minus zoom, zero shows everything.';
 

@@ -1,4 +1,4 @@
-// Where the masses and links of a drawing go: levels from the road upwards, a lane for each chain of links.
+// The layout of masses and links in a drawing: levels from the road upwards, a lane for each chain of links.
 
 const GROUND = 'ground';
 const MOST_LANES = 7;
@@ -19,12 +19,12 @@ function axleLayout(axle, axis) {
   return { place, links };
 }
 
-// A link with one end holds that to the ground.
+// A link with one end connects that end to the ground.
 function grounded(ends) {
   return ends.length > 1 ? ends : [...ends, { point: GROUND, share: -1 }];
 }
 
-// Upper ends above lower ones, as far as links agree on what is up.
+// Places upper ends above lower ones, as far as the links are consistent.
 function assignLevels(place, links) {
   const above = new Map([...place.keys()].map((name) => [name, new Set()]));
   const reaches = (from, to) => from === to || [...above.get(from)].some((next) => reaches(next, to));
@@ -72,7 +72,7 @@ function assignLanes(place, links) {
   best(place, links, lanes.length);
 }
 
-// The order of the lanes in which the least is hidden.
+// The order of the lanes with the fewest overlaps.
 function best(place, links, count) {
   const first = links.map((own) => own.lane);
   const orders = count <= MOST_LANES ? permutations([...Array(count).keys()]) : [[...Array(count).keys()]];
@@ -100,7 +100,7 @@ function permutations(items) {
   return items.flatMap((item) => permutations(items.filter((other) => other !== item)).map((rest) => [item, ...rest]));
 }
 
-// A point lies across the lanes of the links that end at it; what a lever only turns about is reached by an arm.
+// A point extends across the lanes of the links that end at it; an arm connects it to a lever that only turns about it.
 function occupy(place, links) {
   place.forEach((own) => {
     own.lanes = [];
@@ -138,7 +138,7 @@ function crossings(place, links) {
   return links.reduce((sum, link) => sum + all.filter((own) => crosses(link, own)).length, 0);
 }
 
-// Gives a point a level of its own, above the one that it shares.
+// Moves a point to a separate level above the one that it shares.
 function raise(place, hidden) {
   const level = hidden.level;
   place.forEach((own) => {

@@ -1,4 +1,4 @@
-// Limits of these results, from what it is and from what was measured.
+// Limits of these results, from the model and from the measurements.
 
 function limits(data) {
   const own = Object.values(data.fit.parameters);

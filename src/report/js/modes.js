@@ -1,4 +1,4 @@
-// Natural vibrations: how fast, how damped, and what moves.
+// Modes: natural frequencies, damping ratios and shapes.
 
 function modes({ modes: { before, after }, axles }) {
   if (!before.length) return null;
@@ -31,7 +31,7 @@ function modeTable(role, name, set) {
   const rows = set.map((mode) => [number(mode.frequency), percent(mode.damping), shapeDrawing(mode.parts)]);
   return figure(
     `modes-${role}`,
-    `Natural vibrations of the ${name}`,
+    `Modes of the ${name}`,
     table(
       name,
       [

@@ -1,4 +1,4 @@
-// A quantity over another one that goes to and fro, such as a force over the travel that drives it.
+// A quantity over another one that moves back and forth, such as a force over the travel that causes it.
 
 // `curves` are `{role, values}` over the values `at` of x.
 function orbit(place, asked) {

@@ -1,6 +1,6 @@
-// The frame of every report: its head, its list of sections, and what holds for all of it.
+// The frame of every report: its head, its list of sections, and the controls for the whole page.
 
-// `build` gives the head of the page and its sections, `{element, draw?}` or null; the first one stands above the list.
+// `build` gives the head of the page and its sections, `{element, draw?}` or null; the first section is above the list.
 function assemble(build) {
   const again = () => {
     const seen = scrollY;

@@ -1,4 +1,4 @@
-// The fitted parameters: values, errors, correlations and what keeps an error from being known.
+// The fitted parameters: values, standard errors, correlations and why an error is unknown.
 
 function parameters({ fit, refitted, correlations: pairs }) {
   const own = Object.values(fit.parameters);
@@ -75,7 +75,7 @@ function refittedCell(own, unit) {
   return h('span', { class: 'after' }, measured(own.value, own.stderr, unit));
 }
 
-// Where a value lies between its bounds, with its start.
+// Position of a value between its bounds, with its start value.
 function rangeBar({ range, value, start, fitted, unit }, after) {
   if (!range || !fitted) return '';
   const at = (v) => `${(100 * Math.min(1, Math.max(0, (v - range[0]) / (range[1] - range[0])))).toFixed(1)}%`;
@@ -100,7 +100,7 @@ function correlations(pairs) {
   );
 }
 
-// Every pair: the stronger the correlation, the stronger the colour of its sign.
+// All pairs: the colour shows the sign of the correlation, its strength the magnitude.
 function correlationMap(pairs) {
   const names = [...new Set(pairs.flatMap(({ between }) => between))];
   const value = (a, b) => {

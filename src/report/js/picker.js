@@ -1,5 +1,5 @@
-// A figure of one of several: a control, and a place that is drawn anew. What is chosen and where plots are zoomed to
-// is kept, and printing shows all of them.
+// Shows one of several figures: a control, and a place that is redrawn. The selection and the zoom of the plots
+// persist, and printing shows all figures.
 
 // One of several, by radio buttons in a row.
 let groups = 0;
@@ -27,7 +27,7 @@ function select(label, options, chosen, change) {
   );
 }
 
-// `options` are `[value, text]`; `show(value, place, text)` fills a place that stands in the page, and returns its plots.
+// `options` are `[value, text]`; `show(value, place, text)` fills a place that is part of the page, and returns its plots.
 function picker(name, { control = select, label, options, first = options[0][0], show }) {
   if (view.printing) return printed(options, show);
   const place = h('div', { class: 'picked' });

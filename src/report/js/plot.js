@@ -1,4 +1,4 @@
-// Plots: uPlot in the colours of the page, as wide as their place, with a keyboard; on paper, lines of their own.
+// Plots: uPlot in the colours of the page, as wide as their place, with keyboard control; on paper, SVG.
 
 const plots = new Set();
 
@@ -7,9 +7,9 @@ function colour(name) {
 }
 
 // `curves` are `{role, label?, values, error?, hidden?, beside?}`; `x` and `y` are `{label, unit?, log?, range?, say?,
-// whole?}`, values being SI where there is a unit. `error` is drawn as a band about the curve, and told under the
-// pointer. `beside` makes bars of a curve: -1 to the left of their places, 1 to the right, 0 upon them. `gaps` says
-// whether lines end where a value is missing, `from` what of x is shown first.
+// whole?}`, values being SI where there is a unit. `error` is drawn as a band about the curve, and shown under the
+// pointer. `beside` draws a curve as bars: -1 to the left of their positions, 1 to the right, 0 at them. `gaps` says
+// whether lines end where a value is missing, `from` the range of x that is shown first.
 function plot(place, asked) {
   const own = inChosenUnits({ height: 220, digits: 3, gaps: true, ...asked });
   if (view.printing) return sketch(place, own);
@@ -24,7 +24,7 @@ function plot(place, asked) {
   return chart;
 }
 
-// Axes with their units, and curves in them; of a curve with an error, the edges of its band before it.
+// Axes with units, and their curves; the edges of the band of a curve with an error precede the curve.
 function inChosenUnits(own) {
   const [across, up] = [unitOf(own.x.unit), unitOf(own.y.unit)];
   const scaled = (values, { factor }) => (factor === 1 ? values : values.map((v) => (v === null ? null : v * factor)));
@@ -69,7 +69,7 @@ function optionsOf(own, place) {
   };
 }
 
-// Magnitude and phase over frequency, and what else is said of a ratio `below`.
+// Magnitude and phase over frequency, with further text on the ratio `below`.
 const FREQUENCY = {
   label: 'frequency',
   unit: 'Hz',
@@ -87,7 +87,7 @@ function polarPlots(column, { curves, below, ...how }) {
   return parts.map((part, place) => plot(places[place], { x: FREQUENCY, ...how, ...part }));
 }
 
-// Values that stand `at` their places, at the places of others; null where there is none.
+// Values at the positions `at`, arranged at other positions; null where there is none.
 function along(values, at, others) {
   const known = new Map(at.map((own, place) => [own, values[place]]));
   return others.map((own) => (known.has(own) ? known.get(own) : null));
@@ -102,12 +102,12 @@ function zoomHint() {
 const TIME = { label: 'time', unit: 's' };
 const ACCELERATION = { label: 'acceleration', unit: 'm/s^2' };
 
-// A single one, under a heading with its unit.
+// A single plot of an acceleration, under a heading with its unit.
 function acceleration(value) {
   return number(inUnit(value, ACCELERATION.unit).value);
 }
 
-// The place of such a plot.
+// The element of such a plot.
 function traceColumn(trace, kind, run) {
   const name = `${words(trace.mass)}, ${trace.axis}`;
   return h(
@@ -166,7 +166,7 @@ function axis({ text, ticks, whole }, size, space) {
   };
 }
 
-// As wide as the longest number beside an axis.
+// Width of the longest number at an axis.
 function room(u, texts) {
   return Math.max(46, 14 + 7 * Math.max(0, ...(texts || []).map((text) => text.length)));
 }
@@ -191,7 +191,7 @@ function bands(curves) {
   return bandPairs(curves).map(([low, high]) => ({ series: [high + 1, low + 1], fill: () => colour('band') }));
 }
 
-// Only a plot with something to see counts as drawn.
+// Only a plot with visible data counts as drawn.
 function marked(u, place) {
   const visible = u.series.some(
     (series, at) => at > 0 && series.show && u.data[at].some((v) => v !== null && Number.isFinite(v)),
@@ -199,7 +199,7 @@ function marked(u, place) {
   if (visible && u.bbox.width > 0) drawn(place);
 }
 
-// A name for who cannot see the plot, the lines of the legend as they are drawn, and its values for a spreadsheet.
+// A name for screen readers, a legend with the lines as drawn, and the values for a spreadsheet.
 function named(chart, own, place) {
   const name = place.closest('figure').getAttribute('aria-label');
   const shown = own.curves.filter((curve) => curve.role !== 'band');
@@ -226,7 +226,7 @@ function curveRows({ x, y, at }, curves) {
   ];
 }
 
-// Plots of one group keep to one range of x, which those that take their place begin with.
+// Plots of one group share a range of x, which also applies to the plots that replace them.
 let following = false;
 function follow(u, scale, group) {
   const { min, max } = u.scales.x;
@@ -239,7 +239,7 @@ function follow(u, scale, group) {
   following = false;
 }
 
-// A place that changes its width in the middle of a layout is drawn in the next frame, so that no layout waits for it.
+// A plot whose width changes during a layout is drawn in the next frame, so that the layout does not wait for it.
 function keepWidth(chart, place, height) {
   const observer = new ResizeObserver(() =>
     requestAnimationFrame(() => {

@@ -1,4 +1,4 @@
-// What all this was made from.
+// Data and settings of the study.
 
 function record({ record: own, fit, campaign, discover }) {
   const element = section(

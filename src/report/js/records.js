@@ -1,4 +1,4 @@
-// Records over time: measured, and replayed by the baseline and the extended model.
+// Time histories: measured, and simulated with the baseline and the extended model.
 
 function records({ records: all }) {
   if (!all.length) return null;
@@ -60,7 +60,7 @@ function drawRecords(own, place) {
   });
 }
 
-// Over what a force is drawn.
+// The quantity over which a force is drawn.
 const TRAVELS = [
   { of: 'velocity', label: 'velocity', unit: 'm/s' },
   { of: 'displacement', label: 'travel', unit: 'm' },

@@ -63,7 +63,7 @@ function drawRatios(ratios, channels, place) {
   return own.flatMap((ratio, at) => ratioPlots(ratio, columns[at]));
 }
 
-// The measured ratios of all runs over each other: they differ where something is not linear.
+// The measured ratios of all runs in one plot: they differ if the axle is nonlinear.
 function drawLevels(ratios, channels, place) {
   const parts = channels.map((channel) => ({
     own: ratios.filter((ratio) => ratio.channel === channel),

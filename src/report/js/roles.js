@@ -1,4 +1,4 @@
-// What a curve stands for decides how it is drawn: in figures, in their legends and in the text.
+// The role of a curve determines how it is drawn: in figures, in their legends and in the text.
 
 const ROLES = {
   measured: { label: 'measured', width: 4 },
@@ -15,10 +15,10 @@ const ROLES = {
   vertical: { label: 'purely vertical', width: 1.4, dash: [2, 3] },
 };
 
-// Runs of several levels beside each other.
+// Runs at several levels in one plot.
 const PALETTE = ['after', 'before', 'locked', 'vertical', 'start'];
 
-// A short piece of such a line, or a block of such a bar or band.
+// A sample of such a line, bar or band for a legend.
 function sample(role, filled = role === 'band') {
   const { width, dash } = ROLES[role];
   const [fill, stroke] = filled ? [`var(--${role})`, 'none'] : ['none', `var(--${role})`];

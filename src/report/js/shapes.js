@@ -1,4 +1,4 @@
-// What moves in a natural vibration.
+// The shape of a mode.
 
 function shapeDrawing(parts) {
   const moving = parts.filter((part) => part.amplitude >= 0.02);

@@ -1,4 +1,4 @@
-// A plot on paper: small, without a legend, as lines that any printer draws sharply.
+// A plot for paper: a small SVG without a legend.
 
 const SKETCH = { left: 44, right: 12, top: 6, bottom: 32 };
 
@@ -19,7 +19,7 @@ function sketch(place, own) {
   drawn(place);
 }
 
-// Axes are `{low, high, at, ticks}`, `at` being the place of a value on the paper.
+// Axes are `{low, high, at, ticks}`, where `at` gives the position of a value on the paper.
 function alongX({ x, at, from }, width) {
   const [low, high] = from || (x.range ? x.range() : [at[0], at[at.length - 1]]);
   const [begin, length] = [SKETCH.left, width - SKETCH.left - SKETCH.right];
@@ -48,7 +48,7 @@ function decadeTicks(low, high) {
   return powers.flatMap((power) => [1, 2, 5].map((digit) => digit * power)).filter((v) => v >= low && v <= high);
 }
 
-// No more than `most` round values.
+// At most `most` round values.
 function evenTicks(low, high, most) {
   const rough = (high - low) / Math.max(2, most);
   const power = 10 ** Math.floor(Math.log10(rough));

@@ -1,12 +1,12 @@
-// Ratios of the model, computed anew in the page while a parameter is moved.
+// Ratios of the model, computed in the page while a slider moves.
 
-// The steps of a slider.
+// Number of steps of a slider.
 const STEPS = 1000;
 
-// Ranges whose ends are further apart than by such a factor are spread by their logarithm.
+// A range whose ends differ by more than this factor has a logarithmic slider.
 const WIDE = 20;
 
-// What stands in their place where the page has no program, since the model is not linear.
+// The text in place of the sliders of a nonlinear model, whose page has no program.
 function noSliders() {
   if (view.printing) return { element: null };
   const words =
@@ -15,9 +15,9 @@ function noSliders() {
   return { element: h('p', {}, words) };
 }
 
-// Details that are closed until a reader wants them; only then are their figures made. `knobs` are `{name, unit, doc?, value,
-// range, gives}`, of which `gives` makes the values of parameters; `ratios` are `{channel, frequency, turns?, curves}`, of which
-// `curves(part)` are shown beside those that move; what stands `beside` them, `{element, moved}`, hears the value of every knob.
+// Details that are closed until the reader opens them; only then are their figures made. `knobs` are `{name, unit, doc?, value,
+// range, gives}`, where `gives` returns the values of parameters; `ratios` are `{channel, frequency, turns?, curves}`, where
+// `curves(part)` are fixed curves; `beside`, `{element, moved}`, is shown next to them and gets the value of every knob.
 function sliders({ says, knobs, ratios, beside }) {
   if (view.printing) return { element: null };
   const moving = beside ? knobs : knobs.filter((knob) => ratios.some((ratio) => moves(knob, ratio)));
@@ -122,7 +122,7 @@ function triedPlots(ratio, given, column) {
   return polarPlots(column, { at: ratio.frequency, sync: 'tried', curves });
 }
 
-// The last curve of each plot is the one that moves; what is shown of the frequencies stays.
+// The last curve of each plot is the one that moves; the shown range of frequencies stays.
 function redrawn(charts, { magnitude, phase }) {
   [magnitude, phase].forEach((values, at) => {
     charts[at].setData([...charts[at].data.slice(0, -1), values], false);
@@ -130,7 +130,7 @@ function redrawn(charts, { magnitude, phase }) {
   });
 }
 
-// Magnitude in dB and phase in degrees, on the turn of others or of the line before.
+// Magnitude in dB and phase in degrees, unwrapped to `turns` or to the previous line.
 function polar({ channel, frequency, turns }, given) {
   const { re, im } = PROGRAM.response(channel, given, frequency);
   let last = 0;

@@ -16,7 +16,7 @@ function track({ track: own, simulate }) {
     });
   const [traces, variants] = [pick('traces', drawTraces), pick('variants', drawVariants)];
   const changed = own.runs.some((run) => run.traces.some((trace) => trace.after));
-  // On paper every run stands by itself already.
+  // On paper every run is shown separately anyway.
   const grid = own.runs.length > 1 && !view.printing ? passageGrid(own.runs) : null;
   const histograms = errorFigures(own.histograms);
   const element = section(
@@ -80,7 +80,7 @@ function errorsPart(simulate, histograms) {
   ];
 }
 
-// What no rig run sees is no more than a guess in the rides of the rig fit.
+// Parameters that no rig run determines are only start values in the rides of the rig fit.
 function startCaution(names, changed) {
   if (!names.length) return null;
   const [plural, own] = [names.length > 1, names.join(', ')];
@@ -190,7 +190,7 @@ const MODELS = [
   ['pure_vertical', 'purely vertical', ['z']],
 ];
 
-// A locked model does not move along x, so its errors there say nothing.
+// A locked model does not move along x, so its errors there are meaningless.
 function summaryTable(simulate) {
   const rows = Object.keys(simulate.before.summary).flatMap((place) =>
     MODELS.filter(([name, , axes]) => simulate[name] && axes.some((axis) => place.endsWith(axis))).map(

@@ -1,4 +1,4 @@
-// What a study has fitted, to be moved: the ratios of a run of the rig.
+// Sliders for the fitted parameters of a study: they change the ratios of a rig run.
 
 function tried({ fit, refitted, rig: ratios }) {
   if (!PROGRAM) return noSliders();

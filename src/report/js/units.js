@@ -1,4 +1,4 @@
-// Data are SI; the page has the units that the reader has chosen.
+// Data are in SI; the page shows the units that the reader has chosen.
 
 const GRAVITY = 9.80665;
 
@@ -16,7 +16,7 @@ const SYSTEMS = {
   si: { name: 'N/m, m, m/s²', scales: {} },
 };
 
-// The unit in which an SI unit is shown, and the factor that brings a value there.
+// The unit that is shown for an SI unit, and the factor that converts a value to it.
 function unitOf(unit) {
   const [factor, name] = SYSTEMS[view.units].scales[unit] || [1, unit || '1'];
   return { factor, unit: name === '1' ? '' : pretty(name) };
@@ -36,7 +36,7 @@ function withUnit(text, unit) {
   return unit ? `${text}\u202f${unit}` : text;
 }
 
-// A name with the unit of what it names, as at an axis or over a column.
+// A name with its unit, as at an axis or over a column.
 function headed(label, unit) {
   const { unit: shown } = unitOf(unit);
   return shown ? `${label}, ${shown}` : label;

@@ -1,4 +1,4 @@
-// The answer first.
+// The verdict and the key numbers, at the top of the report.
 
 function verdict(data) {
   const { summary, discover } = data;
@@ -72,7 +72,7 @@ function gapAnswer({ gap, effects }) {
   return answer('Residual, standard deviations', line('fitted', gap.fit), line('held out', gap.held_out));
 }
 
-// The sensors of which most is left.
+// The sensors with the largest residuals.
 function leftAnswer({ left, effects }) {
   const most = [...left].sort((a, b) => b.before_percent - a.before_percent).slice(0, 2);
   const size = (value) => `${number(value, 2)} %`;

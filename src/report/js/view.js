@@ -1,14 +1,14 @@
-// What the reader has chosen. A page that is drawn anew keeps to it.
+// The reader's choices, which persist when the page is redrawn.
 
 const view = {
   units: 'mm',
-  // `light` or `dark`; the page may name one to begin with.
+  // `light` or `dark`; the page may set an initial one.
   theme: document.documentElement.dataset.theme,
   // The summaries of the details that are open.
   opened: new Set(),
-  // Printing shows every run at once, and every figure as lines that a printer draws sharply.
+  // Printing shows all runs, and figures as SVG.
   printing: false,
-  // What each picker shows, and where its plots were zoomed to.
+  // The selection of each picker and the zoom of its plots.
   picked: new Map(),
   zoomed: new Map(),
   // The values of parameters that the reader tries, SI.

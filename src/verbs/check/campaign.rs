@@ -5,7 +5,7 @@ use std::path::Path;
 use qcar_runtime::campaign::{Campaign, Role, Run, Test};
 use qcar_runtime::error::InputError;
 
-use crate::doubt::{Does, doubt};
+use crate::doubt::{Statistics, doubt};
 use crate::failure::Failure;
 use crate::table::{Table, number};
 
@@ -51,9 +51,9 @@ fn doubts(campaign: &Campaign) -> Result<Vec<String>, InputError> {
     Ok(sentences)
 }
 
-fn does(samples: &[f64]) -> Option<Does> {
+fn does(samples: &[f64]) -> Option<Statistics> {
     let end = |of: fn(f64, f64) -> f64| samples.iter().copied().reduce(of);
-    Some(Does {
+    Some(Statistics {
         mean: samples.iter().sum::<f64>() / samples.len() as f64,
         min: end(f64::min)?,
         max: end(f64::max)?,

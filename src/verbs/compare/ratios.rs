@@ -20,7 +20,7 @@ use crate::progress::while_counting;
 use crate::report::rounded::{curve, rounded};
 use crate::verbs::frf;
 use crate::verbs::study::rig::{Polar, band, nearest, unwrapped};
-use crate::verbs::study::swept::{Swept, between, swept_by};
+use crate::verbs::study::swept::{LevelResponses, between, swept_by};
 
 /// A channel of both models; if measured, in the run of the measurement.
 #[derive(Serialize)]
@@ -107,18 +107,20 @@ impl Ratio {
 }
 
 /// Both sides for small motions.
-fn at_rest(sides: &[Side; 2]) -> [Swept<'_>; 2] {
-    sides.each_ref().map(|side| Swept::at_rest(&*side.model, &side.values))
+fn at_rest(sides: &[Side; 2]) -> [LevelResponses<'_>; 2] {
+    sides
+        .each_ref()
+        .map(|side| LevelResponses::at_rest(&*side.model, &side.values))
 }
 
 /// A side in the runs of a campaign.
-fn swept<'a>(side: &'a Side, campaign: &Campaign) -> Result<Swept<'a>, InputError> {
+fn swept<'a>(side: &'a Side, campaign: &Campaign) -> Result<LevelResponses<'a>, InputError> {
     if side.model.about().linear {
-        return Ok(Swept::at_rest(&*side.model, &side.values));
+        return Ok(LevelResponses::at_rest(&*side.model, &side.values));
     }
     while_counting(swept_by(&campaign.name, &*side.model), |on_progress| {
         let evidence = Evidence::from_campaign(campaign, side.model.about())?;
-        Ok(Swept::new(&*side.model, &side.values, &evidence, on_progress))
+        Ok(LevelResponses::new(&*side.model, &side.values, &evidence, on_progress))
     })
 }
 
@@ -201,7 +203,7 @@ fn alike(a: &Campaign, first: &Level, b: &Campaign, second: &Level) -> bool {
 
 /// A channel of a run of A and of a run of B, each run with its excitation.
 fn in_run(
-    models: &[Swept; 2],
+    models: &[LevelResponses; 2],
     level: &Level,
     runs: [(&str, usize); 2],
     own: &Observation,

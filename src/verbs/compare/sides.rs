@@ -12,7 +12,7 @@ use super::Arguments;
 use super::subject::Subject;
 use crate::catalogue::{self, Loaded};
 use crate::failure::{Failure, flag};
-use crate::parameters::{self, Beside};
+use crate::parameters::{self, FileExtras};
 use crate::verbs::fit::{self, Choices};
 use crate::verbs::kc::{self, Gradient};
 
@@ -86,16 +86,16 @@ impl Vehicle {
             file: files.last().cloned().unwrap_or_default(),
         };
         for file in files {
-            vehicle.facts.extend(Beside::read(file)?.vehicle);
+            vehicle.facts.extend(FileExtras::read(file)?.vehicle);
         }
         Ok(vehicle)
     }
 }
 
 fn sets(files: [&PathBuf; 2], arguments: &Arguments) -> Result<[Side; 2], Failure> {
-    let beside = [Beside::read(files[0])?, Beside::read(files[1])?];
+    let beside = [FileExtras::read(files[0])?, FileExtras::read(files[1])?];
     let model = model_of_sets(&beside, arguments)?;
-    let side = |file: &PathBuf, beside: &Beside| {
+    let side = |file: &PathBuf, beside: &FileExtras| {
         let loaded = catalogue::load(&model)?;
         let files: Vec<PathBuf> = common(arguments).into_iter().chain([file.clone()]).collect();
         let paths = files.iter().map(PathBuf::as_path);
@@ -113,7 +113,7 @@ fn sets(files: [&PathBuf; 2], arguments: &Arguments) -> Result<[Side; 2], Failur
 }
 
 /// The model of both sets: that of the user, otherwise that of the fits, otherwise that of the campaign.
-fn model_of_sets(beside: &[Beside; 2], arguments: &Arguments) -> Result<String, Failure> {
+fn model_of_sets(beside: &[FileExtras; 2], arguments: &Arguments) -> Result<String, Failure> {
     if let Some(model) = &arguments.model {
         return Ok(model.clone());
     }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use qcar_dsl::patch::{Curve, NewParameter, Ordinate, ParameterRole, Patch};
 use qcar_runtime::discover::answer::{Finding, Learned};
 
-use super::Written;
+use super::ExtendedModel;
 use crate::failure::Failure;
 use crate::files::put;
 use crate::table::number;
@@ -17,7 +17,7 @@ pub(crate) struct LearnedModel {
     /// The laws.
     pub laws: Vec<Law>,
     /// The model with all laws.
-    pub model: Written,
+    pub model: ExtendedModel,
 }
 
 /// A law at a place.
@@ -61,7 +61,7 @@ pub(super) fn learned_model(mut bench: Bench, learned: &Learned) -> Option<Learn
         bench = bench.holding(patched.model);
     }
     let name = bench.checked().name.clone();
-    let model = Written { name, text, file: None };
+    let model = ExtendedModel { name, text, file: None };
     Some(LearnedModel { laws, model })
 }
 

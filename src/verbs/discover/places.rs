@@ -22,7 +22,7 @@ pub(crate) struct Site {
 
 /// A place and the dynamic stiffness that would have to be added there.
 #[derive(Serialize)]
-pub(crate) struct Missing {
+pub(crate) struct PlaceStiffness {
     /// The place.
     #[serde(flatten)]
     pub site: Site,
@@ -57,8 +57,8 @@ struct Stiffness {
 }
 
 /// The places that explain most, best first.
-pub(crate) fn places(of: &Answer) -> Vec<Missing> {
-    let missing = |(site, kappa): (Site, &MissingStiffness)| Missing {
+pub(crate) fn places(of: &Answer) -> Vec<PlaceStiffness> {
+    let missing = |(site, kappa): (Site, &MissingStiffness)| PlaceStiffness {
         site,
         explains: kappa.ceiling,
         kappa: stiffness(kappa),

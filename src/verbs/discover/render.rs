@@ -16,10 +16,10 @@ use super::Answer;
 use super::finding::described;
 use super::learned;
 use super::nuisances::{self, Nuisance};
-use super::places::{self, Missing};
+use super::places::{self, PlaceStiffness};
 use crate::effects;
 use crate::json::{self, Ordered};
-use crate::left::{BeforeAfter, Left, channel, left};
+use crate::left::{BeforeAfter, SensorResidual, channel, left};
 use crate::table::{Table, noted, number, or_dash};
 use crate::units;
 
@@ -32,12 +32,12 @@ pub(crate) struct Result<'a> {
     /// The most probable effects.
     candidates: &'a [Probable],
     /// Residual of each sensor on the held-out runs, or on the fitted runs if none is held out.
-    left: Vec<Left>,
+    left: Vec<SensorResidual>,
     effects: Vec<Effect<'a>>,
     /// Nuisance effects that were fitted with the findings.
     nuisances: Vec<Nuisance<'a>>,
-    r#where: Vec<Where>,
-    places: Vec<Missing>,
+    r#where: Vec<ResidualPart>,
+    places: Vec<PlaceStiffness>,
     visible: Vec<Limit<'a>>,
     learned: Option<learned::Learned<'a>>,
     gap: Gaps,
@@ -94,7 +94,7 @@ struct Evidence {
 }
 
 #[derive(Serialize)]
-struct Where {
+struct ResidualPart {
     channel: String,
     harmonic: Option<usize>,
     band_hz: Option<(f64, f64)>,
@@ -158,7 +158,7 @@ pub(crate) fn result(of: &Answer) -> Result<'_> {
 }
 
 /// Places that explain the residuals; none if the verdict is `None`.
-fn missing(of: &Answer) -> Vec<Missing> {
+fn missing(of: &Answer) -> Vec<PlaceStiffness> {
     match of.discovery.verdict {
         Verdict::None => Vec::new(),
         _ => places::places(of),
@@ -204,8 +204,8 @@ fn limit(of: &DetectionLimit) -> Limit<'_> {
     }
 }
 
-fn place(tile: &Tile) -> Where {
-    Where {
+fn place(tile: &Tile) -> ResidualPart {
+    ResidualPart {
         channel: channel(&tile.sensor),
         harmonic: tile.kind.order(),
         band_hz: tile.kind.order().map(|_| tile.span),
@@ -434,7 +434,7 @@ fn listed(findings: &[Finding]) -> String {
 }
 
 /// Sentence on the place that explains most.
-fn best_place(best: &Missing) -> String {
+fn best_place(best: &PlaceStiffness) -> String {
     let share = 100.0 * best.explains;
     let (at, like) = (best.site.name(), best.shape.name());
     format!("something at {at} could explain {share:.1} % of the residuals of the sweeps; it would act like {like}\n")

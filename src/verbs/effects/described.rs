@@ -8,7 +8,7 @@ use crate::table::Table;
 
 /// An effect as its file describes it.
 #[derive(Serialize)]
-pub struct Described {
+pub struct EffectDescription {
     name: String,
     doc: String,
     source: String,
@@ -38,9 +38,9 @@ struct Parameter {
     doc: String,
 }
 
-impl Described {
+impl EffectDescription {
     /// Describes an effect with all its forms.
-    pub fn of(patch: &Patch) -> Described {
+    pub fn of(patch: &Patch) -> EffectDescription {
         let effect = patch.effect();
         let shared = effect.parameters().into_iter().map(|own| Parameter::of(own, None));
         let of_forms = effect.forms.iter().flat_map(|form| {
@@ -51,7 +51,7 @@ impl Described {
             name: form.name.text.clone(),
             doc: form.doc.clone(),
         });
-        Described {
+        EffectDescription {
             name: effect.name.text.clone(),
             doc: effect.doc.clone(),
             source: effect.source.clone(),

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Seek, SeekFrom, Write};
 
-use super::kept::Kept;
+use super::kept::ExistingRows;
 
 /// A CSV file that is written row by row.
 pub(super) struct Csv {
@@ -18,9 +18,9 @@ impl Csv {
     ///
     /// # Errors
     /// Fails with the error of the system.
-    pub fn open(mut file: File, columns: &[String], first: impl Fn(u64) -> f64) -> io::Result<(Self, Kept)> {
+    pub fn open(mut file: File, columns: &[String], first: impl Fn(u64) -> f64) -> io::Result<(Self, ExistingRows)> {
         let header = columns.join(",") + "\n";
-        let (mut kept, mut end) = (Kept::default(), 0);
+        let (mut kept, mut end) = (ExistingRows::default(), 0);
         let mut reader = BufReader::new(&file);
         let mut line = Vec::new();
         if reader.read_until(b'\n', &mut line)? > 0 && line == header.as_bytes() {

@@ -6,7 +6,7 @@ use qcar_runtime::ensemble::{Column, Ensemble, Rows};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::model::Model;
 
-use super::kept::Kept;
+use super::kept::ExistingRows;
 use super::ledger::{Choice, Ledger, Standing};
 use super::sink::{Sink, unfinished};
 use crate::failure::Failure;
@@ -80,7 +80,7 @@ pub(super) fn fill<M: Model + ?Sized>(
 fn write<M: Model + ?Sized>(
     ensemble: &Ensemble<'_, M>,
     columns: &[Column],
-    (sink, kept): (&mut Sink, &Kept),
+    (sink, kept): (&mut Sink, &ExistingRows),
     (sets, first): (std::ops::Range<u64>, u64),
     path: &Path,
 ) -> Result<Failed, InputError> {
@@ -118,7 +118,7 @@ fn shown(columns: &[Column], block: &[Rows]) -> Vec<f64> {
 
 /// # Errors
 /// Fails if the last row of the file differs from the computed one.
-fn check_last(kept: &Kept, known: &[f64], width: usize, path: &Path) -> Result<(), InputError> {
+fn check_last(kept: &ExistingRows, known: &[f64], width: usize, path: &Path) -> Result<(), InputError> {
     let (Some(last), Some(start)) = (&kept.last, known.len().checked_sub(width)) else {
         return Ok(());
     };
@@ -147,7 +147,7 @@ impl Failed {
     }
 }
 
-fn notes(failed: &Failed, kept: &Kept) -> String {
+fn notes(failed: &Failed, kept: &ExistingRows) -> String {
     let begun = match kept.rows {
         0 => String::new(),
         rows => format!("note: {rows} of them existed already\n"),

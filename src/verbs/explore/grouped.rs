@@ -3,7 +3,7 @@
 use std::fs::File;
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 
-use super::kept::Kept;
+use super::kept::ExistingRows;
 use crate::parquet::{GROUP, MAGIC, Shape};
 
 /// A Parquet file that is written group by group.
@@ -21,7 +21,7 @@ impl Grouped {
     ///
     /// # Errors
     /// Fails with the error of the system.
-    pub fn open(mut file: File, shape: Shape) -> io::Result<(Self, Kept)> {
+    pub fn open(mut file: File, shape: Shape) -> io::Result<(Self, ExistingRows)> {
         let length = file.metadata()?.len();
         let mut magic = [0; 4];
         let begun = length >= shape.length(0) && file.read_exact(&mut magic).is_ok() && magic == *MAGIC;
@@ -29,7 +29,7 @@ impl Grouped {
             true => (length - shape.length(0)) / shape.group_length(GROUP),
             false => 0,
         };
-        let mut kept = Kept {
+        let mut kept = ExistingRows {
             rows: groups * GROUP,
             last: None,
         };

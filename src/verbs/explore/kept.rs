@@ -2,7 +2,7 @@
 
 /// Existing rows.
 #[derive(Default)]
-pub(super) struct Kept {
+pub(super) struct ExistingRows {
     /// Number of complete rows.
     pub rows: u64,
     /// The last of them.

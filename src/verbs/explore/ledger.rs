@@ -27,7 +27,7 @@ pub(super) struct Ledger {
     seed: u64,
     /// Bounds of the varied parameters; for a posterior, its ranges.
     varied: Ordered<(f64, f64)>,
-    posterior: Option<Drawn>,
+    posterior: Option<PosteriorDescription>,
     rides: Vec<(f64, f64)>,
     /// Radius and static deflection of the tyre, and the load on it.
     tyre: Option<[f64; 3]>,
@@ -38,7 +38,7 @@ pub(super) struct Ledger {
 
 /// Description of a posterior.
 #[derive(Serialize)]
-struct Drawn {
+struct PosteriorDescription {
     /// Values and standard errors.
     estimates: Vec<(f64, f64)>,
     /// The first draw, which depends on the correlations.
@@ -160,9 +160,9 @@ fn refuse_others(file: &Path, own: &Value, there: Option<&Value>) -> Result<(), 
     Err(Problem::new(file, Place::File, found, expected, remedy).into())
 }
 
-fn posterior(design: &Design) -> Option<Drawn> {
+fn posterior(design: &Design) -> Option<PosteriorDescription> {
     let estimates = design.posterior()?.estimates().iter();
-    Some(Drawn {
+    Some(PosteriorDescription {
         estimates: estimates.map(|own| (own.value, own.stderr)).collect(),
         first: design.set(0),
     })

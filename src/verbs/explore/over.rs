@@ -10,19 +10,19 @@ use crate::failure::flag;
 
 /// `standard`, or a height and a speed such as `20mm@30km/h`.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Over {
+pub(super) enum RideName {
     /// The twelve runs of the thesis.
     Standard,
     /// A cleat: height in m, and speed in m/s.
     Cleat(f64, f64),
 }
 
-impl FromStr for Over {
+impl FromStr for RideName {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
         if text.trim() == "standard" {
-            return Ok(Over::Standard);
+            return Ok(RideName::Standard);
         }
         let wrong = || format!("expected `standard`, or HEIGHT@SPEED such as 20mm@30km/h, found `{text}`");
         let (height, speed) = text.split_once('@').ok_or_else(wrong)?;
@@ -32,7 +32,7 @@ impl FromStr for Over {
             let value = number.or_else(|| Some(quantity()?.0));
             value.filter(|value| *value > 0.0).ok_or_else(wrong)
         };
-        Ok(Over::Cleat(positive(height, "m")?, positive(speed, "m/s")?))
+        Ok(RideName::Cleat(positive(height, "m")?, positive(speed, "m/s")?))
     }
 }
 
@@ -40,12 +40,12 @@ impl FromStr for Over {
 ///
 /// # Errors
 /// Fails if a height makes no cleat.
-pub(super) fn rides(wanted: &[Over]) -> Result<Vec<Standard>, InputError> {
+pub(super) fn rides(wanted: &[RideName]) -> Result<Vec<Standard>, InputError> {
     let mut rides = Vec::new();
     for own in wanted {
         match own {
-            Over::Standard => rides.extend(Standard::all().expect("the standard cleats are roads")),
-            Over::Cleat(height, speed) => rides.push(Standard::over(*height, *speed).map_err(|error| {
+            RideName::Standard => rides.extend(Standard::all().expect("the standard cleats are roads")),
+            RideName::Cleat(height, speed) => rides.push(Standard::over(*height, *speed).map_err(|error| {
                 let remedy = "choose another height, such as 20mm";
                 flag("--rides", error, "a cleat to drive over", remedy)
             })?),
@@ -56,15 +56,15 @@ pub(super) fn rides(wanted: &[Over]) -> Result<Vec<Standard>, InputError> {
 
 #[cfg(test)]
 mod tests {
-    use super::Over;
+    use super::RideName;
 
     #[test]
     fn heights_and_speeds_have_units() {
-        assert_eq!("20mm@36km/h".parse(), Ok(Over::Cleat(0.02, 10.0)));
-        assert_eq!("0.02@10".parse(), Ok(Over::Cleat(0.02, 10.0)));
-        assert_eq!("standard".parse(), Ok(Over::Standard));
+        assert_eq!("20mm@36km/h".parse(), Ok(RideName::Cleat(0.02, 10.0)));
+        assert_eq!("0.02@10".parse(), Ok(RideName::Cleat(0.02, 10.0)));
+        assert_eq!("standard".parse(), Ok(RideName::Standard));
         for text in ["", "20mm", "20mm@", "20kg@10", "0@10", "20mm@-3", "fast"] {
-            assert!(text.parse::<Over>().is_err(), "{text}");
+            assert!(text.parse::<RideName>().is_err(), "{text}");
         }
     }
 }

@@ -8,7 +8,7 @@ use qcar_runtime::error::{InputError, Place, Problem};
 
 use super::csv::Csv;
 use super::grouped::Grouped;
-use super::kept::Kept;
+use super::kept::ExistingRows;
 use crate::files::finish;
 use crate::parquet::Shape;
 
@@ -60,7 +60,7 @@ impl Sink {
         columns: &[String],
         about: &str,
         first: impl Fn(u64) -> f64,
-    ) -> Result<(Self, Kept), InputError> {
+    ) -> Result<(Self, ExistingRows), InputError> {
         let wrong = |error: io::Error| of_file(path, &error);
         let file = growing(path)?;
         let (table, kept) = if ending(path) == Some("csv") {

@@ -14,8 +14,8 @@ use qcar_runtime::tyre::Tyre;
 use crate::catalogue::Loaded;
 use crate::export::fmu::OnTyre;
 use crate::failure::{Failure, flag};
-use crate::parameters::Beside;
-use crate::roads::Asked;
+use crate::parameters::FileExtras;
+use crate::roads::RequestedRoad;
 
 /// Largest number of points of a profile, which are written as C source text.
 const POINTS: usize = 200_000;
@@ -26,7 +26,7 @@ const POINTS: usize = 200_000;
 /// Fails if the road cannot be used, if there are no vehicle data, if the tyre of the model does not roll, or if the
 /// model has no equilibrium on the tyre.
 pub(super) fn on_tyre(
-    asked: &Asked,
+    asked: &RequestedRoad,
     (model, values): (&Loaded, &Values),
     params: Option<&Path>,
 ) -> Result<OnTyre, Failure> {
@@ -61,7 +61,7 @@ fn vehicle((model, values): (&Loaded, &Values), params: Option<&Path>) -> Result
         let remedy = "add --params with a campaign, or a file that has [vehicle]";
         return Err(flag("--road", "no --params", expected, remedy).into());
     };
-    let facts: BTreeMap<String, f64> = Beside::read(file)?.vehicle;
+    let facts: BTreeMap<String, f64> = FileExtras::read(file)?.vehicle;
     let own = |name: &str| {
         let place = model.about().parameters.iter().position(|own| own.name == name)?;
         values.as_slice().get(place).copied()

@@ -10,7 +10,7 @@ use qcar_signals::signal::Signal;
 use super::Measured;
 use super::guess::{Guess, quantity_of};
 use super::sensors::Sensors;
-use super::swept::{Swept, parts, swept};
+use super::swept::{SweepParameters, parts, swept};
 use crate::table::number;
 use crate::verbs::inspect::{Contents, Course};
 
@@ -38,7 +38,7 @@ struct Part {
 }
 
 enum Kind {
-    Sweep(Swept),
+    Sweep(SweepParameters),
     Cleat,
     /// A K&C cycle: names of the displacement and of the force.
     Curve(String, String),
@@ -77,14 +77,14 @@ impl Proposed {
 }
 
 /// Motion of a pad.
-pub(super) struct Driven {
+pub(super) struct PadMotion {
     /// The sweep, if the whole record is one.
-    whole: Option<Swept>,
+    whole: Option<SweepParameters>,
     /// The parts in which the pad moves, with the sweep of a part that is one, and its start and end, s.
-    parts: Vec<(Option<Swept>, (f64, f64))>,
+    parts: Vec<(Option<SweepParameters>, (f64, f64))>,
 }
 
-impl Driven {
+impl PadMotion {
     /// True if the channel is assumed to be that of a pad.
     pub fn is_in(signal: &Signal, about: &About) -> bool {
         Guess::of(signal, about).is_ok_and(|guess| guess.drives)
@@ -105,7 +105,7 @@ impl Driven {
             )
         };
         let parts = parts(&samples, rate, guess.quantity).into_iter();
-        Some(Driven {
+        Some(PadMotion {
             whole: swept(0..samples.len()),
             parts: parts.map(|part| (swept(part.clone()), lasts(&part))).collect(),
         })
@@ -131,7 +131,7 @@ pub(super) fn propose(file: &Measured, sensors: &Sensors) -> Vec<Proposed> {
     let driven = pad.and_then(|(_, driven)| driven.as_ref());
     let parts = driven.map_or(&[][..], |driven| &driven.parts);
     if parts.iter().filter(|(swept, _)| swept.is_some()).count() > 1 {
-        let one = |(at, (swept, (from, to))): (usize, &(Option<Swept>, (f64, f64)))| {
+        let one = |(at, (swept, (from, to))): (usize, &(Option<SweepParameters>, (f64, f64)))| {
             let name = format!("{} part {}", file.seen, at + 1);
             let (from, to) = (*from, *to);
             proposed(swept.map_or(Kind::Other, Kind::Sweep), Some(Part { name, from, to }))

@@ -6,7 +6,7 @@ use qcar_runtime::campaign::Quantity;
 
 /// A sine of rising frequency and constant peak velocity.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Swept {
+pub(super) struct SweepParameters {
     /// Peak velocity, m/s.
     pub peak_velocity: f64,
     /// First frequency, Hz.
@@ -72,7 +72,7 @@ pub(super) fn parts(samples: &[f64], rate: f64, quantity: Quantity) -> Vec<Range
 }
 
 /// The sweep of a pad; `None` if its motion is no sweep.
-pub(super) fn swept(samples: &[f64], rate: f64, quantity: Quantity) -> Option<Swept> {
+pub(super) fn swept(samples: &[f64], rate: f64, quantity: Quantity) -> Option<SweepParameters> {
     let mut halves = halves(samples, rate, quantity);
     let mut velocities: Vec<f64> = halves.iter().map(|half| half.velocity).collect();
     velocities.sort_by(f64::total_cmp);
@@ -89,7 +89,7 @@ pub(super) fn swept(samples: &[f64], rate: f64, quantity: Quantity) -> Option<Sw
     let (first, last) = (&halves[0], &halves[halves.len() - 1]);
     let start = law.at(first.time - 0.25 / first.frequency);
     let end = law.at(last.time + 0.25 / last.frequency);
-    (law.error(&halves) < STRAIGHT && start > 0.0 && end > RISE * start).then(|| Swept {
+    (law.error(&halves) < STRAIGHT && start > 0.0 && end > RISE * start).then(|| SweepParameters {
         peak_velocity: rounded(usual),
         start: rounded(start),
         end: rounded(end),

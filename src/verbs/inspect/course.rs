@@ -3,7 +3,7 @@
 use qcar_signals::signal::Signal;
 use qcar_signals::summary::Summary;
 
-use crate::doubt::{Does, doubt};
+use crate::doubt::{Statistics, doubt};
 
 /// The range and the course of a channel, in its unit.
 pub(in crate::verbs) struct Course {
@@ -41,7 +41,7 @@ impl Course {
             mean,
             rms: summary.rms(),
             sparkline: sparkline(&summary),
-            doubt: doubt(&signal.unit, mean.map(|mean| Does { mean, min, max })),
+            doubt: doubt(&signal.unit, mean.map(|mean| Statistics { mean, min, max })),
         }
     }
 

@@ -61,7 +61,7 @@ pub(crate) struct MetricResult {
     /// The same for each run and parameter.
     pub by_run: Ordered<Vec<f64>>,
     /// Its uncertainty, if that of any parameter is known.
-    pub doubt: Option<Doubted>,
+    pub doubt: Option<UncertainMetric>,
     /// Sobol indices for each parameter.
     pub sobol: Option<Ordered<Index>>,
     /// Mean and standard deviation over the designs of the Sobol indices.
@@ -70,7 +70,7 @@ pub(crate) struct MetricResult {
 
 /// Uncertainty of a metric.
 #[derive(Serialize)]
-pub(crate) struct Doubted {
+pub(crate) struct UncertainMetric {
     /// Standard deviation.
     pub deviation: f64,
     /// 95 % of a normal distribution, about the value at the mean temperature.
@@ -92,7 +92,7 @@ pub(crate) struct Global {
 }
 
 /// Settings of an analysis.
-pub(crate) struct Asked<'a> {
+pub(crate) struct AnalysisSettings<'a> {
     pub metrics: &'a [usize],
     /// Positions of the parameters.
     pub parameters: &'a [usize],
@@ -108,7 +108,7 @@ pub(crate) struct Asked<'a> {
 pub(crate) fn gather(
     subject: &Subject,
     ground: &mut Ground<'_>,
-    asked: &Asked<'_>,
+    asked: &AnalysisSettings<'_>,
     on_progress: OnProgress<'_>,
 ) -> Result<Sensitivity, MetricError> {
     let groups: Vec<Vec<Reading>> = asked.metrics.iter().map(|&metric| ground.readings_of(metric)).collect();
@@ -157,7 +157,7 @@ pub(crate) fn gather(
 
 /// The requested parameters, then all others with a known uncertainty: they contribute to the uncertainty of a metric
 /// in any case.
-fn moved(subject: &Subject, asked: &Asked<'_>) -> Vec<usize> {
+fn moved(subject: &Subject, asked: &AnalysisSettings<'_>) -> Vec<usize> {
     let others = asked.doubts.places(subject).into_iter();
     let others = others.filter(|place| !asked.parameters.contains(place));
     asked.parameters.iter().copied().chain(others).collect()
@@ -206,7 +206,12 @@ pub(crate) fn rounded(value: f64) -> f64 {
     if value.abs() < ROUNDING { 0.0 } else { value }
 }
 
-fn parameters(subject: &Subject, asked: &Asked<'_>, names: &[String], ground: &Ground<'_>) -> Vec<Parameter> {
+fn parameters(
+    subject: &Subject,
+    asked: &AnalysisSettings<'_>,
+    names: &[String],
+    ground: &Ground<'_>,
+) -> Vec<Parameter> {
     let own = |(&k, name): (&usize, &String)| Parameter {
         name: name.clone(),
         unit: ground.about().parameters[k].unit.to_string(),
@@ -219,11 +224,11 @@ fn parameters(subject: &Subject, asked: &Asked<'_>, names: &[String], ground: &G
 }
 
 /// The uncertainty of a metric with a value, from its interval.
-pub(crate) fn doubted(value: f64, names: &[String], of: &Interval) -> Doubted {
+pub(crate) fn doubted(value: f64, names: &[String], of: &Interval) -> UncertainMetric {
     /// Number of standard deviations that contain 95 % of a normal distribution.
     const NORMAL: f64 = 1.96;
     let (mean, reach) = (value + of.shift, NORMAL * of.deviation);
-    Doubted {
+    UncertainMetric {
         deviation: of.deviation,
         interval: [mean - reach, mean + reach],
         sources: Source::ALL
@@ -238,7 +243,7 @@ pub(crate) fn doubted(value: f64, names: &[String], of: &Interval) -> Doubted {
 /// Sobol indices of the results of `relative`, for parameters within the relative range `spread` of their values.
 fn drawn(
     subject: &Subject,
-    asked: &Asked<'_>,
+    asked: &AnalysisSettings<'_>,
     (plan, spread): (Plan, f64),
     on_progress: OnProgress<'_>,
     relative: impl Fn(&[Values]) -> Vec<Option<Vec<f64>>> + Sync + Send,

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::gather::{Doubted, MetricResult, Sensitivity};
+use super::gather::{MetricResult, Sensitivity, UncertainMetric};
 use crate::table::{Table, counted, noted, number};
 use crate::units;
 
@@ -102,7 +102,7 @@ fn values(of: &Sensitivity) -> Table {
 }
 
 /// The interval of a value, with the difference of its mean if that is visible.
-pub(crate) fn reach(value: f64, doubt: &Doubted, unit: &str) -> String {
+pub(crate) fn reach(value: f64, doubt: &UncertainMetric, unit: &str) -> String {
     const SEEN: f64 = 0.02;
     let [low, high] = doubt.interval;
     let (shift, reach) = (0.5 * (low + high) - value, 0.5 * (high - low));

@@ -11,8 +11,8 @@ use qcar_runtime::tyre::Tyre;
 
 use crate::catalogue::{self, Loaded};
 use crate::failure::{Failure, flag};
-use crate::parameters::{self, Beside, Setting, out_of_range};
-use crate::roads::{Asked, courses};
+use crate::parameters::{self, FileExtras, Setting, out_of_range};
+use crate::roads::{RequestedRoad, courses};
 use crate::verbs::fit::{self, Choices, nonlinear};
 
 /// A model with values on its tyre.
@@ -50,7 +50,7 @@ pub(crate) struct Errors {
 }
 
 /// Input of the user besides the subject.
-pub(crate) struct Beneath<'a> {
+pub(crate) struct SubjectOptions<'a> {
     /// Campaign with start values, vehicle data and cleat runs.
     pub campaign: Option<&'a Path>,
     /// Files with values that take precedence over those.
@@ -58,7 +58,7 @@ pub(crate) struct Beneath<'a> {
     /// Single values that take precedence over those of files.
     pub set: &'a [Setting],
     /// Roads in addition to the cleats.
-    pub roads: &'a [Asked],
+    pub roads: &'a [RequestedRoad],
 }
 
 impl Errors {
@@ -77,7 +77,7 @@ impl Subject {
     /// # Errors
     /// Fails if something cannot be read, compiled, resolved or fitted, if the argument is none of these, or if there
     /// are roads but no tyre.
-    pub fn of(text: &str, beneath: &Beneath<'_>) -> Result<Self, Failure> {
+    pub fn of(text: &str, beneath: &SubjectOptions<'_>) -> Result<Self, Failure> {
         let mut subject = Self::over_cleats(text, beneath)?;
         if subject.tyre.is_none() && !beneath.roads.is_empty() {
             let found = "a road, and no tyre that could roll over it";
@@ -90,7 +90,7 @@ impl Subject {
         Ok(subject)
     }
 
-    fn over_cleats(text: &str, beneath: &Beneath<'_>) -> Result<Self, Failure> {
+    fn over_cleats(text: &str, beneath: &SubjectOptions<'_>) -> Result<Self, Failure> {
         let path = Path::new(text);
         let answer = answer(path);
         if path.join("campaign.toml").is_file() && !catalogue::is_shipped(text) {
@@ -126,8 +126,8 @@ fn answer(path: &Path) -> Option<PathBuf> {
     inside.is_file().then_some(inside).or(own.then(|| path.into()))
 }
 
-fn of_answer(text: &str, answer: &Path, beneath: &Beneath<'_>) -> Result<Subject, Failure> {
-    let beside = Beside::read(answer)?;
+fn of_answer(text: &str, answer: &Path, beneath: &SubjectOptions<'_>) -> Result<Subject, Failure> {
+    let beside = FileExtras::read(answer)?;
     let Some(model) = beside.model else {
         let expected = "the model that was fitted";
         return Err(flag(
@@ -141,7 +141,7 @@ fn of_answer(text: &str, answer: &Path, beneath: &Beneath<'_>) -> Result<Subject
     of_model(text, &model, &[answer.to_path_buf()], beneath)
 }
 
-fn of_model(name: &str, model: &str, own: &[PathBuf], beneath: &Beneath<'_>) -> Result<Subject, Failure> {
+fn of_model(name: &str, model: &str, own: &[PathBuf], beneath: &SubjectOptions<'_>) -> Result<Subject, Failure> {
     let (source, model) = (model, catalogue::load(model)?);
     let folder = beneath.campaign.map(|folder| folder.join("campaign.toml"));
     let files: Vec<PathBuf> = folder
@@ -153,7 +153,7 @@ fn of_model(name: &str, model: &str, own: &[PathBuf], beneath: &Beneath<'_>) -> 
     let values = resolved(&model, &files, campaign.as_ref(), beneath.set)?;
     let (mut facts, mut errors) = (BTreeMap::new(), Errors::default());
     for file in &files {
-        let beside = Beside::read(file)?;
+        let beside = FileExtras::read(file)?;
         facts.extend(beside.vehicle);
         errors.deviations.extend(beside.errors);
         errors.correlate(beside.correlations);
@@ -184,7 +184,7 @@ fn resolved(
 
 /// A campaign: its model, fitted to its rig runs unless the user gives values. Without rig runs it has its start
 /// values.
-fn of_campaign(folder: &Path, beneath: &Beneath<'_>) -> Result<Subject, Failure> {
+fn of_campaign(folder: &Path, beneath: &SubjectOptions<'_>) -> Result<Subject, Failure> {
     if beneath.campaign.is_some() {
         let remedy = "leave --campaign out, or name its model as SUBJECT";
         return Err(flag("--campaign", "a second campaign", "one campaign", remedy).into());
@@ -196,7 +196,7 @@ fn of_campaign(folder: &Path, beneath: &Beneath<'_>) -> Result<Subject, Failure>
     let says = |test: &Test| !linear || matches!(test, Test::Sweep(_) | Test::TimeHistory(_));
     let is_fitted = campaign.runs.iter().any(|run| run.role == Role::Fit && says(&run.test));
     if beneath.params.is_some() || !beneath.set.is_empty() || !is_fitted {
-        let beneath = Beneath {
+        let beneath = SubjectOptions {
             campaign: Some(folder),
             ..*beneath
         };

@@ -21,7 +21,7 @@ use crate::files::put;
 use crate::histories::{History, Kind};
 use crate::json;
 use crate::progress::while_counting;
-use crate::roads::{Asked, courses};
+use crate::roads::{RequestedRoad, courses};
 use crate::table::{Table, number};
 use crate::units;
 
@@ -98,7 +98,7 @@ pub(super) fn roll(
     campaign: &Campaign,
     model: &Loaded,
     values: &Values,
-    roads: &[Asked],
+    roads: &[RequestedRoad],
     variant: Variant,
 ) -> Result<Rolled, InputError> {
     model.check_inertias(values.as_slice())?;

@@ -19,7 +19,7 @@ use crate::json;
 use crate::verbs::discover::{self, Answer};
 use crate::verbs::fit::{self, Choices, Fitted};
 use crate::verbs::kc::{self, Gradient};
-use crate::verbs::simulate::{self, Driven};
+use crate::verbs::simulate::{self, CleatResults};
 
 /// Results of all verbs for a campaign.
 pub struct Study {
@@ -54,15 +54,15 @@ pub struct Track {
     /// Measured runs.
     pub cleats: Vec<Cleat>,
     /// The fitted model.
-    pub before: Driven,
+    pub before: CleatResults,
     /// Its parameters that the fit has left at their start values.
     pub at_start: Vec<String>,
     /// The extended model.
-    pub after: Option<Driven>,
+    pub after: Option<CleatResults>,
     /// The better of both without longitudinal motion.
-    pub locked: Driven,
+    pub locked: CleatResults,
     /// The same with a point contact.
-    pub vertical: Driven,
+    pub vertical: CleatResults,
 }
 
 /// Runs all verbs; their files are in subfolders of `out`.

@@ -7,7 +7,7 @@ use qcar_runtime::fit::quality::{Quality, quality};
 use serde::Serialize;
 
 use super::gather::Study;
-use super::swept::{Swept, swept_by};
+use super::swept::{LevelResponses, swept_by};
 use crate::progress::while_counting;
 use crate::report::rounded::curve;
 use crate::verbs::fit::files::{Compared, compare};
@@ -50,7 +50,7 @@ pub fn ratios(of: &Study) -> Vec<Ratio> {
     let after = of.after.as_ref();
     let after = after.map(|after| {
         while_counting(swept_by(&of.fitted.campaign.name, &*after.model), |on_progress| {
-            Swept::new(&*after.model, &after.values, &of.answer.evidence, on_progress)
+            LevelResponses::new(&*after.model, &after.values, &of.answer.evidence, on_progress)
         })
     });
     let compared = compare(&of.fitted);
@@ -60,7 +60,7 @@ pub fn ratios(of: &Study) -> Vec<Ratio> {
         .collect()
 }
 
-fn together(of: &Compared, after: Option<&Swept>) -> Ratio {
+fn together(of: &Compared, after: Option<&LevelResponses>) -> Ratio {
     let Compared { level, observation, .. } = of;
     let measured = unwrapped(&observation.value);
     let after = after.and_then(|after| {

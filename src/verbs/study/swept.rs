@@ -10,7 +10,7 @@ use qcar_runtime::response::parameters::Values;
 use qcar_runtime::response::ratio::ratio;
 
 /// A model with values. A nonlinear model is evaluated at the level of each run, at the lines of its data.
-pub struct Swept<'a> {
+pub struct LevelResponses<'a> {
     model: &'a dyn Model,
     values: &'a Values,
     /// The responses; `None` for a model that counts as linear.
@@ -27,10 +27,10 @@ pub fn swept_by(campaign: &str, model: &dyn Model) -> String {
     format!("{campaign}: {} in sweep", model.about().name)
 }
 
-impl<'a> Swept<'a> {
+impl<'a> LevelResponses<'a> {
     /// A model for small motions about rest, for any run.
     pub fn at_rest(model: &'a dyn Model, values: &'a Values) -> Self {
-        Swept {
+        LevelResponses {
             model,
             values,
             responses: None,
@@ -40,13 +40,13 @@ impl<'a> Swept<'a> {
     /// A model in the sweeps of a campaign.
     pub fn new(model: &'a dyn Model, values: &'a Values, evidence: &Evidence, on_progress: OnProgress<'_>) -> Self {
         if model.about().linear {
-            return Swept::at_rest(model, values);
+            return LevelResponses::at_rest(model, values);
         }
         let is_sweep = |run: &usize| matches!(evidence.runs[*run].stimulus, Stimulus::Sweep { .. });
         let sweeps = (0..evidence.runs.len()).filter(is_sweep);
         let sweeps: Vec<Evidence> = sweeps.map(|run| evidence.only(|own| own == run)).collect();
         let responses = progress::map(&sweeps, on_progress, |sweep| responses(model, values, sweep));
-        Swept {
+        LevelResponses {
             model,
             values,
             responses: Some(responses.into_iter().flatten().collect()),

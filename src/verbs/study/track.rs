@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::gather::{self, Study};
 use crate::report::rounded::curve;
-use crate::verbs::simulate::Driven;
+use crate::verbs::simulate::CleatResults;
 use crate::verbs::simulate::compared::{Compared, Pair, alignment, pairs};
 
 /// All runs.
@@ -99,7 +99,7 @@ struct Models<'a> {
 }
 
 fn run(models: &Models, track: &gather::Track, place: usize, cleat: &Cleat) -> Option<Run> {
-    let of = |about, driven: &'_ Driven| Aligned::new(about, models.named, cleat, &driven.rides[place]);
+    let of = |about, driven: &'_ CleatResults| Aligned::new(about, models.named, cleat, &driven.rides[place]);
     let before = of(models.before, &track.before)?;
     let after = track.after.as_ref().and_then(|driven| of(models.best, driven));
     let (locked, vertical) = (of(models.best, &track.locked)?, of(models.best, &track.vertical)?);

@@ -19,13 +19,13 @@ pub(super) struct Contents<'a> {
     #[serde(flatten)]
     answer: &'a Answer,
     rides: Vec<Ride>,
-    moves: Vec<Moved<'a>>,
+    moves: Vec<DependentParameter<'a>>,
     elasticities: &'a [Vec<f64>],
 }
 
 /// A parameter of the model that follows a parameter of the file: `factor` times its value, plus `constant`.
 #[derive(Serialize)]
-struct Moved<'a> {
+struct DependentParameter<'a> {
     /// Position of the parameter in the file.
     knob: usize,
     parameter: &'a str,
@@ -62,7 +62,7 @@ impl<'a> Contents<'a> {
         axles: [&Values; 2],
     ) -> Self {
         let rides = (0..ground.courses().len()).filter_map(|course| ride((subject, ground), course, axles));
-        let moves = moves.iter().map(|own| Moved {
+        let moves = moves.iter().map(|own| DependentParameter {
             knob: own.knob,
             parameter: &ground.about().parameters[own.parameter].name,
             factor: own.factor,

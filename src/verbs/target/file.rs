@@ -127,7 +127,7 @@ pub(super) enum Amount {
 
 /// The kind of an amount.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Meant {
+pub(super) enum AmountKind {
     /// A number in SI.
     Value(f64),
     /// A fraction of the present value.
@@ -140,9 +140,9 @@ impl Amount {
     ///
     /// # Errors
     /// Fails with the expected form, in words.
-    pub fn of(&self, unit: &str) -> Result<Meant, String> {
+    pub fn of(&self, unit: &str) -> Result<AmountKind, String> {
         match self {
-            Amount::Number(value) if value.is_finite() => Ok(Meant::Value(*value)),
+            Amount::Number(value) if value.is_finite() => Ok(AmountKind::Value(*value)),
             Amount::Number(value) => Err(format!("{value}")),
             Amount::Text(text) => {
                 let part = text
@@ -150,7 +150,7 @@ impl Amount {
                     .strip_suffix('%')
                     .and_then(|part| part.trim_end().parse::<f64>().ok());
                 if let Some(part) = part.filter(|part| part.is_finite()) {
-                    return Ok(Meant::OfToday(part / 100.0));
+                    return Ok(AmountKind::OfToday(part / 100.0));
                 }
                 let plain = text
                     .trim()
@@ -160,7 +160,7 @@ impl Amount {
                 let value = plain
                     .or(quantity.map(|(value, _)| value))
                     .filter(|value| value.is_finite());
-                value.map(Meant::Value).ok_or_else(|| format!("\"{text}\""))
+                value.map(AmountKind::Value).ok_or_else(|| format!("\"{text}\""))
             }
         }
     }
@@ -228,10 +228,10 @@ impl Read {
     ///
     /// # Errors
     /// Fails with every text that is no road.
-    pub fn roads(&self) -> Result<Vec<roads::Asked>, InputError> {
+    pub fn roads(&self) -> Result<Vec<roads::RequestedRoad>, InputError> {
         let (mut roads, mut problems) = (Vec::new(), Vec::new());
         for own in &self.file.roads {
-            match own.get_ref().parse::<roads::Asked>() {
+            match own.get_ref().parse::<roads::RequestedRoad>() {
                 Ok(road) => roads.push(road.asked_in(&self.path)),
                 Err(_) => {
                     let found = format!("`{}`", own.get_ref());
@@ -251,15 +251,15 @@ impl Read {
 
 #[cfg(test)]
 mod tests {
-    use super::{Amount, Meant};
+    use super::{Amount, AmountKind};
 
     #[test]
     fn an_amount_is_si_a_quantity_or_a_part_of_today() {
         let text = |text: &str| Amount::Text(text.into());
-        assert_eq!(Amount::Number(2.0).of("m"), Ok(Meant::Value(2.0)));
-        assert_eq!(text("187 N/mm").of("N/m"), Ok(Meant::Value(187e3)));
-        assert_eq!(text("3 m/s^1.75").of("m/s^1.75"), Ok(Meant::Value(3.0)));
-        assert_eq!(text("90 %").of("m"), Ok(Meant::OfToday(0.9)));
+        assert_eq!(Amount::Number(2.0).of("m"), Ok(AmountKind::Value(2.0)));
+        assert_eq!(text("187 N/mm").of("N/m"), Ok(AmountKind::Value(187e3)));
+        assert_eq!(text("3 m/s^1.75").of("m/s^1.75"), Ok(AmountKind::Value(3.0)));
+        assert_eq!(text("90 %").of("m"), Ok(AmountKind::OfToday(0.9)));
         assert!(text("2 kg").of("m").is_err());
     }
 }

@@ -9,10 +9,10 @@ use qcar_runtime::target::{
 use serde::Serialize;
 
 use super::plan::Plan;
-use super::sure::{self, Sureness};
+use super::sure::{self, DesignUncertainty};
 use crate::json::Ordered;
 use crate::progress::while_counting;
-use crate::verbs::sensitivity::gather::{Doubted, doubted, rounded};
+use crate::verbs::sensitivity::gather::{UncertainMetric, doubted, rounded};
 use crate::verbs::sensitivity::subject::Subject;
 
 /// The result.
@@ -36,7 +36,7 @@ pub(super) struct Answer {
     pub elasticities: Vec<Vec<f64>>,
     pub front: Option<FrontAnswer>,
     pub space: Option<SpaceAnswer>,
-    pub uncertainty: Option<Sureness>,
+    pub uncertainty: Option<DesignUncertainty>,
 }
 
 /// A parameter that may change.
@@ -74,7 +74,7 @@ pub(super) struct Target {
     /// target in the conflict.
     pub multiplier: f64,
     /// Uncertainty of the design's value, if parameters are uncertain.
-    pub doubt: Option<Doubted>,
+    pub doubt: Option<UncertainMetric>,
     /// Share of draws in which the design meets the target.
     pub holds: Option<f64>,
     /// Share of the designs in the solution space that meet it.
@@ -167,32 +167,12 @@ pub(super) fn gather(
     let intervals = |design: &[f64]| sure::intervals(subject, (ground, &axle), plan, design);
     let found = sure::design(&mut task, &axle, seed, plan.sure)?;
     let known = [found.design.clone()];
-    let front = wanted[0].then(|| {
-        let aims: Vec<(usize, Sense)> = plan.aims.iter().map(|aim| (aim.result, aim.sense)).collect();
-        let settings = FrontSettings {
-            seed,
-            generations: plan.generations,
-            ..FrontSettings::default()
-        };
-        while_counting("the front: generation".into(), |on_progress| {
-            front(&task, &aims, &known, settings, on_progress)
-        })
-    });
+    let front = wanted[0].then(|| search_front(&task, plan, &known, seed));
     let doubts = intervals(&found.design);
     let sureness = sure::sureness(subject, plan, &task, &axle, &found.design);
-    let space = if wanted[1] && found.met {
-        let mut task = task.clone();
-        sure::keep_away(&mut task, &axle, &found, plan.probability);
-        let settings = SpaceSettings {
-            probability: plan.probability,
-            seed,
-            ..SpaceSettings::default()
-        };
-        while_counting("the solution space: round".into(), |on_progress| {
-            space(&task, &known, settings, on_progress)
-        })
-    } else {
-        None
+    let space = match wanted[1] && found.met {
+        true => search_space(task.clone(), (&axle, &found), plan, &known, seed),
+        false => None,
     };
     let cuts = space.as_ref().map_or(Vec::new(), |space| {
         plan.cuts
@@ -222,6 +202,39 @@ pub(super) fn gather(
         elasticities: slopes.map_or(Vec::new(), |slopes| elasticities(plan, &slopes, &found)),
         front: front.map(|front| front_answer(plan, &found, front)),
         space: space.map(|space| space_answer(plan, &space, cuts)),
+    })
+}
+
+/// The Pareto front of the plan's aims, with progress in a terminal.
+fn search_front(task: &Task<'_>, plan: &Plan, known: &[Vec<f64>], seed: u64) -> Front {
+    let aims: Vec<(usize, Sense)> = plan.aims.iter().map(|aim| (aim.result, aim.sense)).collect();
+    let settings = FrontSettings {
+        seed,
+        generations: plan.generations,
+        ..FrontSettings::default()
+    };
+    while_counting("the front: generation".into(), |on_progress| {
+        front(task, &aims, known, settings, on_progress)
+    })
+}
+
+/// The solution space, whose limits have margins for the plan's probability, with progress in a terminal. `None` if no
+/// box is found.
+fn search_space(
+    mut task: Task<'_>,
+    (axle, found): (&Axle<'_>, &Found),
+    plan: &Plan,
+    known: &[Vec<f64>],
+    seed: u64,
+) -> Option<Space> {
+    sure::keep_away(&mut task, axle, found, plan.probability);
+    let settings = SpaceSettings {
+        probability: plan.probability,
+        seed,
+        ..SpaceSettings::default()
+    };
+    while_counting("the solution space: round".into(), |on_progress| {
+        space(&task, known, settings, on_progress)
     })
 }
 
@@ -305,7 +318,7 @@ fn targets(
     task: &Task<'_>,
     found: &Found,
     space: Option<&Space>,
-    sure: Option<(&Sureness, Vec<Interval>)>,
+    sure: Option<(&DesignUncertainty, Vec<Interval>)>,
 ) -> Vec<Target> {
     let places = plan.doubts.places(subject);
     let names: Vec<String> = places

@@ -17,7 +17,7 @@ use qcar_runtime::response::parameters::Values;
 use qcar_runtime::target::{Coupling, Knob, Limit, Move, Sense};
 use toml::Spanned;
 
-use super::file::{Amount, Meant, Read};
+use super::file::{Amount, AmountKind, Read};
 use crate::failure::Failure;
 use crate::verbs::sensitivity::chosen;
 use crate::verbs::sensitivity::doubts::Doubts;
@@ -186,8 +186,8 @@ impl<'a> Planner<'a, '_> {
 
     fn amount<T>(&mut self, own: &Amount, at: &Spanned<T>, key: &str, unit: &str, today: f64) -> Option<f64> {
         match own.of(unit) {
-            Ok(Meant::Value(value)) => Some(value),
-            Ok(Meant::OfToday(part)) => Some(part * today),
+            Ok(AmountKind::Value(value)) => Some(value),
+            Ok(AmountKind::OfToday(part)) => Some(part * today),
             Err(found) => {
                 let expected = format!("a number in {unit}, a quantity of that kind, or percent of today's value");
                 self.wrong(at, key, &found, &expected, "correct the value or its unit");

@@ -8,7 +8,7 @@ use qcar_runtime::model::About;
 use qcar_runtime::response::parameters::Values;
 
 use super::gather::{Answer, FrontAnswer, SpaceAnswer, Target};
-use super::sure::Sureness;
+use super::sure::DesignUncertainty;
 use crate::table::{Table, counted, noted, number, or_dash};
 use crate::units;
 use crate::verbs::sensitivity::render::reach;
@@ -69,7 +69,7 @@ fn verdict(of: &Answer) -> String {
 }
 
 /// How often the design meets its targets with uncertain parameters.
-fn sureness(of: &Sureness) -> String {
+fn sureness(of: &DesignUncertainty) -> String {
     let words = of.parameters.0.iter().filter(|(_, names)| !names.is_empty());
     let words: Vec<String> = words
         .map(|(source, names)| format!("{source} ({})", names.join(", ")))

@@ -19,7 +19,7 @@ const SETTLED: f64 = 0.02;
 
 /// Uncertainty of the parameters, and of the results of the design.
 #[derive(Serialize)]
-pub(super) struct Sureness {
+pub(super) struct DesignUncertainty {
     /// Required probability of each target, if the file states one.
     pub wanted: Option<f64>,
     /// Share of draws in which all targets that must hold are met.
@@ -106,7 +106,7 @@ pub(super) fn sureness(
     task: &Task<'_>,
     axle: &Axle<'_>,
     design: &[f64],
-) -> Option<Sureness> {
+) -> Option<DesignUncertainty> {
     if axle.is_certain() {
         return None;
     }
@@ -117,7 +117,7 @@ pub(super) fn sureness(
     let share = |holds: &dyn Fn(&Vec<f64>) -> bool| {
         drawn.iter().filter(|own| own.as_ref().is_some_and(holds)).count() as f64 / DRAWS as f64
     };
-    Some(Sureness {
+    Some(DesignUncertainty {
         wanted: plan.sure,
         all: share(&|excess| real.holds(excess)),
         draws: DRAWS,

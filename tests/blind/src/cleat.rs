@@ -4,7 +4,7 @@
 use crate::corner::{
     BODY, COORDINATES, Corner, FLEX, PITCH, PWT, Push, SF, STATES, State, WHEEL, X_BODY, X_PWT, X_SF, X_WHEEL,
 };
-use crate::enveloping::Felt;
+use crate::enveloping::EffectiveRoad;
 use crate::integrate::step;
 use crate::programme::CleatRun;
 use crate::radial::Radial;
@@ -119,14 +119,14 @@ struct Rolling<'a> {
 enum Law {
     Area,
     Radial(Radial),
-    Cams(Felt),
+    Cams(EffectiveRoad),
 }
 
 impl Law {
     fn of(corner: &Corner, road: &Road) -> Self {
         let (axle, laws) = (corner.axle, corner.laws);
         if let Some(cams) = laws.cams {
-            return Self::Cams(Felt::new(road, axle, cams));
+            return Self::Cams(EffectiveRoad::new(road, axle, cams));
         }
         laws.radial_springs
             .map_or(Self::Area, |springs| Self::Radial(Radial::new(axle, springs)))
@@ -167,7 +167,7 @@ impl Rolling<'_> {
     }
 
     /// The same across the effective plane (see [`crate::hardware::Cams`]).
-    fn push_of_cams(&self, felt: &Felt, t: f64, y: &State) -> Push {
+    fn push_of_cams(&self, felt: &EffectiveRoad, t: f64, y: &State) -> Push {
         let (hub, velocity) = self.hub(t, y);
         let [height, growth, slope] = felt.at(hub[0]);
         let cosine = 1.0 / slope.hypot(1.0);

@@ -5,12 +5,12 @@ use crate::hardware::Cams;
 use crate::road::{Road, SPACING};
 
 /// Effective height and slope of a road, every [`SPACING`] along it.
-pub struct Felt {
+pub struct EffectiveRoad {
     height: Vec<f64>,
     slope: Vec<f64>,
 }
 
-impl Felt {
+impl EffectiveRoad {
     /// Rolls the cams of an axle's tyre over a road.
     pub fn new(road: &Road, axle: &Axle, cams: Cams) -> Self {
         let lowest = cam_heights(road, axle.r_tire, cams);
@@ -88,7 +88,7 @@ mod tests {
             let expected = step - 0.9 * axle.r_tire * (1.0 - (1.0 - u * u).sqrt());
             assert!((lowest[start - ahead] - expected.max(0.0)).abs() < 1e-12);
         }
-        let felt = Felt::new(&road, &axle, cams);
+        let felt = EffectiveRoad::new(&road, &axle, cams);
         assert_eq!(felt.at(0.3), [0.0; 3]);
         let [height, growth, slope] = felt.at(2.2);
         assert!((height - step).abs() < 1e-12 && growth.abs() < 1e-12 && slope.abs() < 1e-12);

@@ -11,7 +11,7 @@ use super::{CURVE, DYNAMIC_CURVE, FORCES};
 use crate::spelling;
 
 /// Context for reading the runs.
-pub(super) struct Known<'a> {
+pub(super) struct RunContext<'a> {
     pub folder: &'a Path,
     pub files: &'a Files,
     /// `None` if they have problems.
@@ -20,7 +20,7 @@ pub(super) struct Known<'a> {
 }
 
 /// Reads a run. Its keys depend on its kind, so no key is refused if the kind is unknown.
-pub(super) fn run(section: &Section<'_>, known: &Known<'_>) -> Option<Run> {
+pub(super) fn run(section: &Section<'_>, known: &RunContext<'_>) -> Option<Run> {
     let (file, role) = (section.text("file"), section.choice("role", Role::NAMES));
     let (name, without) = (section.optional_text("name"), without(section, known));
     let window = tap::window(section);
@@ -47,7 +47,7 @@ pub(super) fn run(section: &Section<'_>, known: &Known<'_>) -> Option<Run> {
 }
 
 /// Sensors that are not read from a run.
-fn without(section: &Section<'_>, known: &Known<'_>) -> Vec<String> {
+fn without(section: &Section<'_>, known: &RunContext<'_>) -> Vec<String> {
     let without = section.texts("without");
     let names: Vec<&str> = known
         .sensors
@@ -76,7 +76,7 @@ pub(super) fn is_table(file: &str) -> bool {
 }
 
 /// Sample rate of a run, Hz. For a measured `file` it is the highest of its channels unless it is given.
-fn sample_rate(section: &Section<'_>, known: &Known<'_>, file: Option<&String>) -> Option<f64> {
+fn sample_rate(section: &Section<'_>, known: &RunContext<'_>, file: Option<&String>) -> Option<f64> {
     let Some(file) = file.filter(|_| !section.has("sample_rate")) else {
         return section.positive("sample_rate", "Hz");
     };
@@ -86,7 +86,7 @@ fn sample_rate(section: &Section<'_>, known: &Known<'_>, file: Option<&String>) 
 }
 
 /// Reads a test; its file is given if it is no plain table.
-type ReadTest = fn(&Section<'_>, &Known<'_>, Option<&String>) -> Option<Test>;
+type ReadTest = fn(&Section<'_>, &RunContext<'_>, Option<&String>) -> Option<Test>;
 
 /// The kinds with the columns that a curve of the kind has.
 const KINDS: &[(&str, (ReadTest, &[&str]))] = &[
@@ -102,7 +102,7 @@ const KINDS: &[(&str, (ReadTest, &[&str]))] = &[
     ("dynamometer", (|section, _, _| dynamometer(section), FORCES)),
 ];
 
-fn sweep(section: &Section<'_>, known: &Known<'_>, file: Option<&String>) -> Option<Test> {
+fn sweep(section: &Section<'_>, known: &RunContext<'_>, file: Option<&String>) -> Option<Test> {
     let (peak_velocity, spacing) = (
         section.positive("peak_velocity", "m/s"),
         section.choice("spacing", Spacing::NAMES),
@@ -170,7 +170,7 @@ fn dynamometer(section: &Section<'_>) -> Option<Test> {
     }))
 }
 
-fn cleat(section: &Section<'_>, known: &Known<'_>, file: Option<&String>) -> Option<Test> {
+fn cleat(section: &Section<'_>, known: &RunContext<'_>, file: Option<&String>) -> Option<Test> {
     let (speed, sample_rate) = (section.positive("speed", "m/s"), sample_rate(section, known, file));
     let cleat = section.text("cleat")?;
     if let Some(roads) = known.roads
@@ -195,7 +195,7 @@ fn cleat(section: &Section<'_>, known: &Known<'_>, file: Option<&String>) -> Opt
     })
 }
 
-fn time_history(section: &Section<'_>, known: &Known<'_>, file: Option<&String>) -> Option<Test> {
+fn time_history(section: &Section<'_>, known: &RunContext<'_>, file: Option<&String>) -> Option<Test> {
     let (sample_rate, band_limited) = (sample_rate(section, known, file), section.boolean("band_limited"));
     let (band, periodic) = (section.range("band"), section.flag("periodic"));
     let (sample_rate, band_limited) = (sample_rate?, band_limited?);

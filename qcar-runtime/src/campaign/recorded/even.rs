@@ -25,7 +25,7 @@ pub(super) struct Even {
 }
 
 /// Reasons why a window has no even samples.
-pub(super) struct Broken {
+pub(super) struct UnevenWindow {
     /// Time of the fault, s, if it is at one instant.
     pub at: Option<f64>,
     pub found: String,
@@ -80,7 +80,7 @@ impl Even {
         rate: f64,
         (from, to): (Option<f64>, Option<f64>),
         margin: usize,
-    ) -> Result<Even, Broken> {
+    ) -> Result<Even, UnevenWindow> {
         let range = inside(samples.len(), base, rate, (from, to))?;
         let broken = |at: usize| is_gap(base, at, rate) || !samples.at(at).is_finite();
         if let Some(at) = range
@@ -141,9 +141,9 @@ fn inside(
     base: &TimeBase,
     rate: f64,
     (from, to): (Option<f64>, Option<f64>),
-) -> Result<Range<usize>, Broken> {
+) -> Result<Range<usize>, UnevenWindow> {
     if count < 2 {
-        return Err(Broken {
+        return Err(UnevenWindow {
             at: None,
             found: format!("{count} samples"),
             expected: "at least two".into(),
@@ -169,7 +169,7 @@ fn inside(
     if covered && range.len() >= 2 {
         return Ok(range);
     }
-    Err(Broken {
+    Err(UnevenWindow {
         at: None,
         found: format!("a window from {first_time} to {last_time} s"),
         expected: format!("a window within the recording, from {start} to {end} s"),
@@ -182,7 +182,7 @@ fn is_gap(base: &TimeBase, at: usize, rate: f64) -> bool {
     matches!(base, TimeBase::Times(_)) && !steps::is_one(time(base, at) - time(base, at - 1), rate)
 }
 
-fn at_break(samples: &Samples, base: &TimeBase, at: usize, rate: f64) -> Broken {
+fn at_break(samples: &Samples, base: &TimeBase, at: usize, rate: f64) -> UnevenWindow {
     let lost = samples
         .range(at..samples.len())
         .take_while(|value| !value.is_finite())
@@ -196,7 +196,7 @@ fn at_break(samples: &Samples, base: &TimeBase, at: usize, rate: f64) -> Broken 
         0 => format!("steps of {} s", 1.0 / rate),
         _ => "a value for every sample of the run".into(),
     };
-    Broken {
+    UnevenWindow {
         at: Some(time(base, at)),
         found,
         expected,

@@ -19,17 +19,17 @@ const KEPT: usize = 1 << 26;
 /// The files of a campaign.
 #[derive(Default)]
 pub(in crate::campaign) struct Files {
-    read: RefCell<HashMap<PathBuf, Known>>,
+    read: RefCell<HashMap<PathBuf, FileContents>>,
 }
 
 /// Contents of a file.
-struct Known {
+struct FileContents {
     /// Names and patterns of the channels with samples; `None` for all.
     wanted: Option<Vec<String>>,
     recording: Result<Rc<Recording>, InputError>,
 }
 
-impl Known {
+impl FileContents {
     fn has(&self, sources: &[String]) -> bool {
         let known = self.wanted.as_ref();
         known.is_none_or(|known| sources.iter().all(|source| known.contains(source)))
@@ -75,7 +75,7 @@ impl Files {
         wanted: Option<Vec<String>>,
         recording: Result<Rc<Recording>, InputError>,
     ) -> Result<Rc<Recording>, InputError> {
-        let known = Known {
+        let known = FileContents {
             wanted,
             recording: recording.clone(),
         };

@@ -42,14 +42,14 @@ impl Sets for Alone<'_> {
 }
 
 /// A model with as many parameter sets as it computes together. The last set fills unused lanes.
-pub struct Several<'a> {
+pub struct ModelSets<'a> {
     model: &'a dyn Model,
     constants: Vec<Lanes>,
     /// Inputs, equal in all lanes.
     u: Vec<Lanes>,
 }
 
-impl<'a> Several<'a> {
+impl<'a> ModelSets<'a> {
     /// The model with at least one parameter set.
     pub fn new(model: &'a dyn Model, sets: &[Vec<f64>]) -> Self {
         let of_lane = |lane: usize| &sets[lane.min(sets.len() - 1)];
@@ -70,7 +70,7 @@ impl<'a> Several<'a> {
     }
 }
 
-impl Sets for Several<'_> {
+impl Sets for ModelSets<'_> {
     const LANES: usize = LANES;
 
     fn derivative(&mut self, x: &[f64], u: &[f64], dx: &mut [f64]) {

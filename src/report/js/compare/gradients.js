@@ -1,4 +1,4 @@
-// What the K&C curves of two campaigns say.
+// The gradients of the K&C curves of two campaigns.
 
 function gradients({ kc }) {
   if (!kc.length) return null;

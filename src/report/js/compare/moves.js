@@ -1,4 +1,4 @@
-// The parameters side by side, those that moved most first.
+// The parameters of both sides, those that differ most first.
 
 function moves({ parameters: all }) {
   const differing = all.filter((own) => own.moved || own.a === null || own.b === null);

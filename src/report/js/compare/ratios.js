@@ -1,4 +1,4 @@
-// Transmissibilities of both sides over each other, and what was measured.
+// Transmissibilities of both sides, with the measured ones.
 
 function ratios(data) {
   const { ratios: all } = data;
@@ -86,7 +86,7 @@ function comparedPlots(ratio, column) {
   return polarPlots(column, { at: ratio.frequency, sync: 'ratios', curves, below: change });
 }
 
-// Zero stays in sight.
+// The axis always includes zero.
 function aroundZero(u, low, high) {
   return padded(u, Math.min(0, low === null ? 0 : low), Math.max(0.1, high === null ? 0 : high));
 }

@@ -1,4 +1,4 @@
-// What is compared, and how the models differ.
+// The two sides, and the differences between their models.
 
 const SIDES = [
   ['a', 'A', 'before'],

@@ -1,4 +1,4 @@
-// What moved, and what it does, in a few numbers.
+// The largest changes and their consequences, in a few numbers.
 
 function summary(data) {
   const element = section(
@@ -50,7 +50,7 @@ function frequencyShift({ a, b }) {
   return a && b ? b.frequency / a.frequency - 1 : null;
 }
 
-// Of what hardly vibrates, a frequency says little.
+// The frequency of a strongly damped mode says little.
 function largestShifts(pairs) {
   const lively = pairs.filter(({ a, b }) => a && b && Math.max(a.damping, b.damping) < 0.5);
   return largest('Natural frequencies', lively, frequencyShift, (own) => [
@@ -59,7 +59,7 @@ function largestShifts(pairs) {
   ]);
 }
 
-// Of what was measured, where both sides were.
+// Changes of the measured values, if both sides were measured.
 function largestRatios(channels) {
   const byChannel = new Map();
   const known = channels.map(({ channel, change, measured: own }) => ({ channel, ...(own || change) }));

@@ -1,4 +1,4 @@
-// Natural vibrations of both sides, each beside the one that is most like it.
+// Modes of both sides, each paired with the most similar one.
 
 function vibrations({ modes: pairs }) {
   if (!pairs.length) return null;
@@ -23,9 +23,9 @@ function vibrations({ modes: pairs }) {
     ),
     figure(
       'modes',
-      'Natural vibrations of A and B',
+      'Modes of A and B',
       table(
-        'Natural vibrations',
+        'Modes',
         [
           ['A, Hz', 'number'],
           ['B, Hz', 'number'],

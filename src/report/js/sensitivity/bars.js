@@ -65,22 +65,22 @@ function bars(kind, name, rows, across) {
   );
 }
 
-// Next to the largest bar, one that is smaller than this part of it is not seen.
+// A bar that is shorter than this share of the longest one would be invisible.
 const SEEN = 0.01;
 
-// Of `[name, value]` the largest, by size.
+// The entries `[name, value]` with the largest magnitudes.
 function largest(pairs, most) {
   const known = pairs.filter(([, value]) => Number.isFinite(value) && value !== 0);
   const sorted = known.sort((a, b) => Math.abs(b[1]) - Math.abs(a[1])).slice(0, most);
   return sorted.filter(([, value]) => Math.abs(value) >= SEEN * Math.abs(sorted[0][1]));
 }
 
-// A share as percent; what rounding has left of none is none.
+// A share as percent; a rounding error counts as zero.
 function share(of) {
   return Math.abs(of) < 5e-4 ? '0 %' : percent(of);
 }
 
-// Metrics in parts of no more than `most`, each with a name.
+// Metrics in groups of at most `most`, each with a name.
 function parted(caption, metrics, most) {
   const count = Math.ceil(metrics.length / most);
   const each = Math.ceil(metrics.length / count);
@@ -89,7 +89,7 @@ function parted(caption, metrics, most) {
   return parts.map((part) => [caption + ends(part), part]);
 }
 
-// So many metrics stand beside each other in a table.
+// Largest number of metrics in the columns of one table.
 const ACROSS = 5;
 
 function metricTables(caption, metrics, columns, rows) {

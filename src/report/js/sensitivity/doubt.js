@@ -1,4 +1,4 @@
-// How sure each metric is, and which parameters its uncertainty comes from.
+// The uncertainty of each metric, and the parameters that cause it.
 
 const DOUBT_BARS = 8;
 

@@ -1,7 +1,7 @@
-// All elasticities: parameters down, metrics across, the stronger the darker.
+// All elasticities: a row for each parameter, a column for each metric; darker means larger.
 
 const MATRIX = { left: 120, head: 112, cell: [50, 20], right: 70, most: 16 };
-// The elasticity of full colour, and how much colour leaves the number readable.
+// The elasticity with full colour, and the most colour that leaves the number readable.
 const FULL = 1;
 const DEEPEST = 0.5;
 

@@ -1,4 +1,4 @@
-// Sobol indices: the share of the variance that is a parameter's, alone and with others.
+// Sobol indices: the share of the variance due to a parameter, alone and together with others.
 
 const SOBOL_BARS = 10;
 

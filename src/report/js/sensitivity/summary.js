@@ -1,4 +1,4 @@
-// The metrics with what is known of them, and what they depend on most.
+// The metrics with their uncertainty, and the parameters on which they depend most.
 
 function summary(data) {
   const { metrics, parameters, runs } = data;
@@ -47,7 +47,7 @@ function lead({ metrics, parameters }) {
   return `Of ${parameters.length} parameters, ${listed} ${names.length > 1 ? 'move' : 'moves'} a metric most.`;
 }
 
-// Names of the parameters, that which moves any metric most first.
+// Names of the parameters, the one that changes any metric most first.
 function byWeight(metrics, parameters) {
   const size = (value) => (Number.isFinite(value) ? Math.abs(value) : 0);
   const weight = ({ name }) => Math.max(...metrics.map((own) => size(own.elasticities[name])));

@@ -1,4 +1,4 @@
-// What moves each metric: a tornado of its elasticities.
+// A tornado chart of the elasticities of each metric.
 
 const TORNADO_BARS = 10;
 

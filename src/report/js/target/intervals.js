@@ -1,4 +1,4 @@
-// The parameters: their ranges, today's values, the design and the solution space, on one bar each.
+// A bar for each parameter: its range, today's value, the design and the solution space.
 
 function intervals(data) {
   const columns = [

@@ -1,4 +1,4 @@
-// Today's axle and the design over each cleat, beside the car that was tested.
+// Today's axle and the design over each cleat, with the measurements of the tested car.
 
 function rides(data) {
   if (!data.rides.length) return null;
@@ -55,5 +55,5 @@ function ridePlots(ride, place, title) {
   );
 }
 
-// s; the impact and the first of its after-shake.
+// Shown time, s: the impact and the beginning of the after-shake.
 const RIDE_VIEW = [-0.05, 0.6];

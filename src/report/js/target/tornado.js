@@ -1,4 +1,4 @@
-// What moves the metrics of the targets: percent for one percent of a parameter, at the design.
+// Elasticities of the target metrics at the design: percent per percent of a parameter.
 
 function tornado(data) {
   if (!data.sensitivity.length) return null;

@@ -1,4 +1,4 @@
-// The parameters of the design, to be moved: the metrics of the targets to first order, and of a linear model the ratios to the road that it
+// Sliders for the parameters of the design: they change the metrics of the targets to first order and, for a linear model, the ratios that it
 // declares.
 
 // Hz.
@@ -16,7 +16,7 @@ function tried(data) {
   return sliders({ ...responses(data), beside, says: [beside ? `${rides} ` : null, responses(data).says] });
 }
 
-// Each target with its value at the design, and where its elasticities put it for other values.
+// Each target with its value at the design, and the estimate from its elasticities for other values.
 function estimates({ targets, parameters, elasticities }) {
   if (!elasticities.length) return null;
   const columns = [
@@ -45,14 +45,14 @@ function estimates({ targets, parameters, elasticities }) {
   return { element: table('Estimates of the targets', columns, rows), moved };
 }
 
-// Beyond a limit by no more than this part of it, a target counts as met.
+// A target that exceeds its limit by at most this share counts as met.
 const SLACK = 5e-5;
 
 function beyond({ sense, limit }, value) {
   return ((sense === 'at_most' ? 1 : -1) * (value - limit)) / (Math.abs(limit) || 1);
 }
 
-// By which factor a metric changes: a power of each parameter that has kept its sign, else a line.
+// The factor by which a metric changes: a power of each parameter that keeps its sign, otherwise linear.
 function estimated(elasticities, values, parameters) {
   return values.reduce((factor, value, k) => {
     const part = parameters[k].design === 0 ? 1 : value / parameters[k].design;

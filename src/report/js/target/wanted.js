@@ -66,7 +66,7 @@ function interval(own) {
   return own.doubt ? own.doubt.interval.map((value) => quantity(value, own.unit)).join(' … ') : '–';
 }
 
-// What is not known of the parameters, and how often the design is good for it.
+// The uncertainty of the parameters, and how often the design meets the targets.
 function doubts({ all, draws, wanted, parameters }) {
   const by = Object.entries(parameters)
     .filter(([, names]) => names.length)

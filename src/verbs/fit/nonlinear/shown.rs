@@ -22,8 +22,8 @@ struct Fitted<'a> {
     parameters: Ordered<&'a ParameterFit>,
     all_correlations: Vec<Correlation>,
     profiles: &'a [ParameterProfile],
-    gap: Of<Option<f64>>,
-    left: Vec<Left>,
+    gap: ByRole<Option<f64>>,
+    left: Vec<SensorResidual>,
     stopped: &'a str,
     converged: bool,
     starts: usize,
@@ -34,7 +34,7 @@ struct Fitted<'a> {
 
 /// A value for the fitted runs and one for the held-out runs.
 #[derive(Serialize)]
-struct Of<T> {
+struct ByRole<T> {
     fit: T,
     held_out: T,
 }
@@ -48,7 +48,7 @@ struct Other<'a> {
 
 /// Residual of a sensor in a kind of run.
 #[derive(Serialize)]
-struct Left {
+struct SensorResidual {
     channel: String,
     kind: &'static str,
     percent: f64,
@@ -65,7 +65,7 @@ impl Nonlinear {
             parameters: named.collect(),
             all_correlations: self.correlations(),
             profiles: &self.profiles,
-            gap: Of {
+            gap: ByRole {
                 fit: finite(self.found.explanation.misfit.fit),
                 held_out: finite(self.found.explanation.misfit.held_out),
             },
@@ -107,9 +107,9 @@ impl Nonlinear {
             .collect()
     }
 
-    fn left(&self) -> Vec<Left> {
+    fn left(&self) -> Vec<SensorResidual> {
         let left = left::left(&self.evidence, [&self.found.explanation; 2]);
-        let own = |left: left::Left| Left {
+        let own = |left: left::SensorResidual| SensorResidual {
             channel: left.channel,
             kind: left.kind,
             percent: left.after_percent,

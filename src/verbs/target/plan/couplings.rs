@@ -1,5 +1,7 @@
 //! Couplings between parameters.
 
+use std::collections::BTreeMap;
+
 use qcar_runtime::target::{Coupling, Knob, Move};
 use toml::Spanned;
 
@@ -17,38 +19,10 @@ impl Planner<'_, '_> {
                     follows: Some(follows),
                     sum: None,
                     at_most: None,
-                    ..
+                    factor,
                 } => {
-                    let followed = self.parameter_knob(follows, "coupling.follows", knobs);
-                    let place = self.parameter(parameter, "coupling.parameter");
-                    let (Some(knob), Some(place)) = (followed, place) else {
-                        continue;
-                    };
-                    if moves.iter().any(|own| own.parameter == place) {
-                        let found = "a parameter that already follows or changes";
-                        self.wrong(
-                            parameter,
-                            "coupling.parameter",
-                            found,
-                            "a parameter that follows no other",
-                            "remove one of them",
-                        );
-                        continue;
-                    }
-                    let ratio = self.values().as_slice()[place] / knobs[knob].today;
-                    let factor = own.factor.unwrap_or(ratio);
-                    let leader = (&knobs[knob], moves[knob].parameter);
-                    if let Err((found, expected)) = self.can_follow(place, leader, factor) {
-                        let remedy = "correct the factor, or narrow the range of what it follows";
-                        self.wrong(parameter, "coupling.parameter", &found, &expected, remedy);
-                        continue;
-                    }
-                    moves.push(Move {
-                        knob,
-                        parameter: place,
-                        factor,
-                        constant: 0.0,
-                    });
+                    let follower = self.follower((parameter, follows), *factor, knobs, moves);
+                    moves.extend(follower);
                 }
                 file::Coupling {
                     parameter: None,
@@ -56,27 +30,7 @@ impl Planner<'_, '_> {
                     sum: Some(sum),
                     at_most: Some(most),
                     factor: None,
-                } => {
-                    if !most.is_finite() || !sum.get_ref().values().all(|factor| factor.is_finite()) {
-                        let (found, expected) =
-                            ("a number that is not finite", "finite factors and a finite `at_most`");
-                        self.wrong(sum, "coupling.sum", found, expected, "correct the numbers");
-                        continue;
-                    }
-                    let mut factors = vec![0.0; knobs.len()];
-                    for (name, factor) in sum.get_ref() {
-                        let named = Spanned::new(sum.span(), name.clone());
-                        if let Some(knob) = self.parameter_knob(&named, "coupling.sum", knobs) {
-                            factors[knob] = *factor;
-                        }
-                    }
-                    let words: Vec<String> = sum
-                        .get_ref()
-                        .iter()
-                        .map(|(name, factor)| format!("{factor} {name}"))
-                        .collect();
-                    couplings.push((words.join(" + "), Coupling { factors, most: *most }));
-                }
+                } => couplings.extend(self.bounded_sum(sum, *most, knobs)),
                 _ => {
                     let at = &self.read.file.subject;
                     let expected = "`parameter` and `follows`, or `sum` and `at_most`";
@@ -91,6 +45,73 @@ impl Planner<'_, '_> {
             }
         }
         couplings
+    }
+
+    /// The move of a parameter that follows another one, times `factor` or today's ratio. Reports a mistake and gives
+    /// `None` if it cannot follow.
+    fn follower(
+        &mut self,
+        (parameter, follows): (&Spanned<String>, &Spanned<String>),
+        factor: Option<f64>,
+        knobs: &[Knob],
+        moves: &[Move],
+    ) -> Option<Move> {
+        let followed = self.parameter_knob(follows, "coupling.follows", knobs);
+        let place = self.parameter(parameter, "coupling.parameter");
+        let (knob, place) = (followed?, place?);
+        if moves.iter().any(|own| own.parameter == place) {
+            let found = "a parameter that already follows or changes";
+            self.wrong(
+                parameter,
+                "coupling.parameter",
+                found,
+                "a parameter that follows no other",
+                "remove one of them",
+            );
+            return None;
+        }
+        let ratio = self.values().as_slice()[place] / knobs[knob].today;
+        let factor = factor.unwrap_or(ratio);
+        let leader = (&knobs[knob], moves[knob].parameter);
+        if let Err((found, expected)) = self.can_follow(place, leader, factor) {
+            let remedy = "correct the factor, or narrow the range of what it follows";
+            self.wrong(parameter, "coupling.parameter", &found, &expected, remedy);
+            return None;
+        }
+        Some(Move {
+            knob,
+            parameter: place,
+            factor,
+            constant: 0.0,
+        })
+    }
+
+    /// The limit of a sum of parameters, with its description. Reports a mistake and gives `None` if a number is not
+    /// finite.
+    fn bounded_sum(
+        &mut self,
+        sum: &Spanned<BTreeMap<String, f64>>,
+        most: f64,
+        knobs: &[Knob],
+    ) -> Option<(String, Coupling)> {
+        if !most.is_finite() || !sum.get_ref().values().all(|factor| factor.is_finite()) {
+            let (found, expected) = ("a number that is not finite", "finite factors and a finite `at_most`");
+            self.wrong(sum, "coupling.sum", found, expected, "correct the numbers");
+            return None;
+        }
+        let mut factors = vec![0.0; knobs.len()];
+        for (name, factor) in sum.get_ref() {
+            let named = Spanned::new(sum.span(), name.clone());
+            if let Some(knob) = self.parameter_knob(&named, "coupling.sum", knobs) {
+                factors[knob] = *factor;
+            }
+        }
+        let terms: Vec<String> = sum
+            .get_ref()
+            .iter()
+            .map(|(name, factor)| format!("{factor} {name}"))
+            .collect();
+        Some((terms.join(" + "), Coupling { factors, most }))
     }
 
     /// Checks a parameter that is a factor times a knob at both ends of its range. Fails with what was found and what

@@ -2,6 +2,7 @@
 
 use qcar_runtime::metric::Reading;
 use qcar_runtime::target::{Limit, Sense};
+use toml::Spanned;
 
 use super::{Planner, Wanted};
 use crate::verbs::sensitivity::chosen::fits;
@@ -22,57 +23,10 @@ impl<'a> Planner<'a, '_> {
             let Some(metric) = self.metric(&target.metric, "target.metric") else {
                 continue;
             };
-            if let Some(wish) = target
-                .wish
-                .as_ref()
-                .filter(|wish| !(*wish.get_ref() > 0.0 && wish.get_ref().is_finite()))
-            {
-                let found = wish.get_ref().to_string();
-                self.wrong(
-                    wish,
-                    "target.wish",
-                    &found,
-                    "a cost above zero",
-                    "correct it, or remove it from what must hold",
-                );
-            }
-            if target.at_most.is_none() && target.at_least.is_none() && target.equals.is_none() {
-                let found = "neither `at_most` nor `at_least` nor `equals`";
-                self.wrong(&target.metric, "target", found, "a limit", "add one of them");
-            }
-            let mut readings = self.ground.readings_of(metric);
-            if let Some(runs) = &target.runs {
-                let named = |reading: &Reading, pattern: &str| {
-                    reading
-                        .course
-                        .is_some_and(|run| fits(pattern, &self.ground.courses()[run].name))
-                };
-                let missing = runs
-                    .get_ref()
-                    .iter()
-                    .find(|own| !readings.iter().any(|reading| named(reading, own)));
-                if let Some(missing) = missing.cloned() {
-                    let known: Vec<&str> = self
-                        .ground
-                        .courses()
-                        .iter()
-                        .map(|course| course.name.as_str())
-                        .collect();
-                    let expected = match self.ground.metrics()[metric].what.is_ridden() {
-                        true => format!("one of {}", known.join(", ")),
-                        false => format!("no run, since `{}` needs none", target.metric.get_ref()),
-                    };
-                    self.wrong(
-                        runs,
-                        "target.runs",
-                        &format!("`{missing}`"),
-                        &expected,
-                        "correct the name or remove it",
-                    );
-                    continue;
-                }
-                readings.retain(|reading| runs.get_ref().iter().any(|own| named(reading, own)));
-            }
+            self.check_target(target);
+            let Some(readings) = self.readings_of(target, metric) else {
+                continue;
+            };
             if readings.is_empty() {
                 self.no_run(target);
                 continue;
@@ -84,6 +38,68 @@ impl<'a> Planner<'a, '_> {
             self.wrong(&read.file.subject, "target", "no target", "at least one", remedy);
         }
         all
+    }
+
+    /// Reports a wish that is not a cost, and a target without a limit.
+    fn check_target(&mut self, target: &file::Target) {
+        if let Some(wish) = target
+            .wish
+            .as_ref()
+            .filter(|wish| !(*wish.get_ref() > 0.0 && wish.get_ref().is_finite()))
+        {
+            let found = wish.get_ref().to_string();
+            self.wrong(
+                wish,
+                "target.wish",
+                &found,
+                "a cost above zero",
+                "correct it, or remove it from what must hold",
+            );
+        }
+        if target.at_most.is_none() && target.at_least.is_none() && target.equals.is_none() {
+            let found = "neither `at_most` nor `at_least` nor `equals`";
+            self.wrong(&target.metric, "target", found, "a limit", "add one of them");
+        }
+    }
+
+    /// The readings of a metric on the runs that a target names, or on all runs. Reports a name without a run and gives
+    /// `None`.
+    fn readings_of(&mut self, target: &file::Target, metric: usize) -> Option<Vec<Reading>> {
+        let mut readings = self.ground.readings_of(metric);
+        let Some(runs) = &target.runs else {
+            return Some(readings);
+        };
+        let named = |reading: &Reading, pattern: &str| {
+            reading
+                .course
+                .is_some_and(|run| fits(pattern, &self.ground.courses()[run].name))
+        };
+        let missing = runs
+            .get_ref()
+            .iter()
+            .find(|own| !readings.iter().any(|reading| named(reading, own)));
+        let Some(missing) = missing else {
+            readings.retain(|reading| runs.get_ref().iter().any(|own| named(reading, own)));
+            return Some(readings);
+        };
+        let known: Vec<&str> = self
+            .ground
+            .courses()
+            .iter()
+            .map(|course| course.name.as_str())
+            .collect();
+        let expected = match self.ground.metrics()[metric].what.is_ridden() {
+            true => format!("one of {}", known.join(", ")),
+            false => format!("no run, since `{}` needs none", target.metric.get_ref()),
+        };
+        self.wrong(
+            runs,
+            "target.runs",
+            &format!("`{missing}`"),
+            &expected,
+            "correct the name or remove it",
+        );
+        None
     }
 
     fn no_run(&mut self, target: &file::Target) {
@@ -131,20 +147,7 @@ impl<'a> Planner<'a, '_> {
                         margin: 0.0,
                     };
                     if let Some(other) = limits.iter().find(|other| contradict(other, &limit)) {
-                        let of = run.as_ref().map_or(String::new(), |run| format!(" on {run}"));
-                        let shown = |value: f64| match unit {
-                            "1" => value.to_string(),
-                            unit => format!("{value} {unit}"),
-                        };
-                        let (here, there) = (shown(value), shown(other.value));
-                        let found = format!("{here} for `{name}`{of}, where another target has {there}");
-                        self.wrong(
-                            at,
-                            key,
-                            &found,
-                            "targets that can hold together",
-                            "remove one of them, or make it a wish",
-                        );
+                        self.contradiction((at, key), [value, other.value], (&name, run.as_deref(), unit));
                         continue;
                     }
                     if limits.contains(&limit) {
@@ -160,6 +163,29 @@ impl<'a> Planner<'a, '_> {
             }
         }
         (limits, wanted)
+    }
+
+    /// Reports a limit and the value of another one of the same reading that cannot both be met.
+    fn contradiction<T>(
+        &mut self,
+        (at, key): (&Spanned<T>, &str),
+        [here, there]: [f64; 2],
+        (metric, run, unit): (&str, Option<&str>, &str),
+    ) {
+        let shown = |value: f64| match unit {
+            "1" => value.to_string(),
+            unit => format!("{value} {unit}"),
+        };
+        let of = run.map_or(String::new(), |run| format!(" on {run}"));
+        let (here, there) = (shown(here), shown(there));
+        let found = format!("{here} for `{metric}`{of}, where another target has {there}");
+        self.wrong(
+            at,
+            key,
+            &found,
+            "targets that can hold together",
+            "remove one of them, or make it a wish",
+        );
     }
 }
 

@@ -46,7 +46,7 @@ fn main() -> ExitCode {
 }
 
 /// The options of the command line.
-struct Asked {
+struct Options {
     qcar: PathBuf,
     seeds: Vec<u64>,
     kinds: Vec<Kind>,
@@ -68,24 +68,24 @@ fn run() -> Result<(), String> {
         print!("{}", tables(&read(Path::new(file))?));
         return Ok(());
     }
-    let asked = asked(words)?;
-    if !asked.perturb.is_empty() {
-        return perturb(&asked);
+    let options = options(words)?;
+    if !options.perturb.is_empty() {
+        return perturb(&options);
     }
-    let mut outcomes = match &asked.out {
-        Some(out) if asked.resume && out.exists() => read(out)?,
+    let mut outcomes = match &options.out {
+        Some(out) if options.resume && out.exists() => read(out)?,
         _ => Vec::new(),
     };
     outcomes.retain(|outcome| outcome.verdict != "failed");
     let is_new = |case: &Case| !outcomes.iter().any(|outcome| outcome.case == case.name);
-    let cases: Vec<Case> = wanted(&asked).into_iter().filter(is_new).collect();
-    outcomes.extend(answer_all(&asked, &cases)?);
+    let cases: Vec<Case> = wanted(&options).into_iter().filter(is_new).collect();
+    outcomes.extend(answer_all(&options, &cases)?);
     print!("\n{}", tables(&outcomes));
     Ok(())
 }
 
-fn asked(words: Vec<String>) -> Result<Asked, String> {
-    let mut asked = Asked {
+fn options(words: Vec<String>) -> Result<Options, String> {
+    let mut options = Options {
         qcar: beside_this()?,
         seeds: vec![1],
         kinds: Kind::ALL.to_vec(),
@@ -101,25 +101,25 @@ fn asked(words: Vec<String>) -> Result<Asked, String> {
     let mut words = words.into_iter();
     while let Some(word) = words.next() {
         if word == "--resume" {
-            asked.resume = true;
+            options.resume = true;
             continue;
         }
         let value = words.next().ok_or(format!("{word} needs a value"))?;
         match word.as_str() {
-            "--qcar" => asked.qcar = value.into(),
-            "--seeds" => asked.seeds = value.split(',').map(number).collect::<Result<_, _>>()?,
-            "--kinds" => asked.kinds = value.split(',').map(kind).collect::<Result<_, _>>()?,
-            "--only" => asked.only = value,
-            "--part" => asked.part = part(&value)?,
-            "--jobs" => asked.jobs = number(&value)?,
-            "--keep" => asked.keep = Some(value.into()),
-            "--found-is-separable" => asked.found_is_separable = value == "yes",
-            "--perturb" => asked.perturb = value.split(',').map(str::to_owned).collect(),
-            "--out" => asked.out = Some(value.into()),
+            "--qcar" => options.qcar = value.into(),
+            "--seeds" => options.seeds = value.split(',').map(number).collect::<Result<_, _>>()?,
+            "--kinds" => options.kinds = value.split(',').map(kind).collect::<Result<_, _>>()?,
+            "--only" => options.only = value,
+            "--part" => options.part = part(&value)?,
+            "--jobs" => options.jobs = number(&value)?,
+            "--keep" => options.keep = Some(value.into()),
+            "--found-is-separable" => options.found_is_separable = value == "yes",
+            "--perturb" => options.perturb = value.split(',').map(str::to_owned).collect(),
+            "--out" => options.out = Some(value.into()),
             _ => return Err(format!("what is {word}?")),
         }
     }
-    Ok(asked)
+    Ok(options)
 }
 
 fn number<T: std::str::FromStr>(text: &str) -> Result<T, String> {
@@ -162,23 +162,23 @@ fn at(path: &Path, error: impl std::fmt::Display) -> String {
     format!("{}: {error}", path.display())
 }
 
-fn wanted(asked: &Asked) -> Vec<Case> {
-    let all = asked.seeds.iter().flat_map(|&seed| cases(seed));
-    let of_kind = all.filter(|case| asked.kinds.contains(&case.kind));
-    let wanted = of_kind.filter(|case| case.name.contains(&asked.only) || format!("{:?}", case.kind) == asked.only);
-    let (part, of) = asked.part;
+fn wanted(options: &Options) -> Vec<Case> {
+    let all = options.seeds.iter().flat_map(|&seed| cases(seed));
+    let of_kind = all.filter(|case| options.kinds.contains(&case.kind));
+    let wanted = of_kind.filter(|case| case.name.contains(&options.only) || format!("{:?}", case.kind) == options.only);
+    let (part, of) = options.part;
     wanted.skip(part - 1).step_by(of).collect()
 }
 
 /// Each job takes the next case that no other job has taken.
-fn answer_all(asked: &Asked, cases: &[Case]) -> Result<Vec<Outcome>, String> {
+fn answer_all(options: &Options, cases: &[Case]) -> Result<Vec<Outcome>, String> {
     let (next, outcomes) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
     let job = || {
         while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
-            let outcome = answer(asked, case, None)?;
+            let outcome = answer(options, case, None)?;
             let mut outcomes = outcomes.lock().map_err(|e| e.to_string())?;
             println!("{}", outcome.line());
-            if let Some(out) = &asked.out {
+            if let Some(out) = &options.out {
                 add_line(out, &outcome).map_err(|e| at(out, e))?;
             }
             outcomes.push(outcome);
@@ -186,7 +186,7 @@ fn answer_all(asked: &Asked, cases: &[Case]) -> Result<Vec<Outcome>, String> {
         Ok(())
     };
     thread::scope(|scope| {
-        let jobs: Vec<_> = (0..asked.jobs.max(1)).map(|_| scope.spawn(job)).collect();
+        let jobs: Vec<_> = (0..options.jobs.max(1)).map(|_| scope.spawn(job)).collect();
         let ends = jobs
             .into_iter()
             .map(|job| job.join().map_err(|_| "a job panicked".to_owned())?);
@@ -205,12 +205,12 @@ fn add_line(out: &Path, outcome: &Outcome) -> std::io::Result<()> {
 }
 
 /// How each answer depends on each assumed number: prints the answers that change and counts them.
-fn perturb(asked: &Asked) -> Result<(), String> {
+fn perturb(options: &Options) -> Result<(), String> {
     let (mut changed, mut all) = (0, 0);
-    for case in wanted(asked) {
-        let usual = answer(asked, &case, None)?;
-        for (name, factor) in asked.perturb.iter().flat_map(|name| [(name, 0.7), (name, 1.3)]) {
-            let other = answer(asked, &case, Some(&format!("{name}={factor}")))?;
+    for case in wanted(options) {
+        let usual = answer(options, &case, None)?;
+        for (name, factor) in options.perturb.iter().flat_map(|name| [(name, 0.7), (name, 1.3)]) {
+            let other = answer(options, &case, Some(&format!("{name}={factor}")))?;
             all += 1;
             if (&other.verdict, &other.named, &other.alike) != (&usual.verdict, &usual.named, &usual.alike) {
                 changed += 1;
@@ -233,21 +233,21 @@ fn told(outcome: &Outcome) -> String {
     format!("{} {}", outcome.verdict, names.collect::<Vec<_>>().join(" "))
 }
 
-fn answer(asked: &Asked, case: &Case, assume: Option<&str>) -> Result<Outcome, String> {
+fn answer(options: &Options, case: &Case, assume: Option<&str>) -> Result<Outcome, String> {
     let passing = tempfile::tempdir().map_err(|e| e.to_string())?;
-    let keep = asked.keep.as_deref().unwrap_or(passing.path());
+    let keep = options.keep.as_deref().unwrap_or(passing.path());
     let folder = keep.join(case.name.replace([' ', '/', ':'], "_"));
     make_once(case, &folder)?;
-    let mut command = Command::new(&asked.qcar);
+    let mut command = Command::new(&options.qcar);
     command.arg("discover").arg(&folder).args(["--format", "json"]);
     if let Some(assume) = assume {
         command.args(["--assume", assume]);
     }
-    if asked.jobs > 1 {
+    if options.jobs > 1 {
         command.env("RAYON_NUM_THREADS", "1");
     }
     let output = command.output();
-    let output = output.map_err(|e| format!("{}; build it first: cargo build --release", at(&asked.qcar, e)))?;
+    let output = output.map_err(|e| format!("{}; build it first: cargo build --release", at(&options.qcar, e)))?;
     if !output.status.success() {
         let words = String::from_utf8_lossy(&output.stderr);
         eprintln!("{}: {}: {words}", case.name, output.status);
@@ -255,7 +255,7 @@ fn answer(asked: &Asked, case: &Case, assume: Option<&str>) -> Result<Outcome, S
     }
     let answer = serde_json::from_slice(&output.stdout).map_err(|e| format!("{}: {e}", case.name))?;
     let found = Outcome::new(case, &answer, f64::INFINITY);
-    if asked.found_is_separable && found.is_right() {
+    if options.found_is_separable && found.is_right() {
         return Ok(found);
     }
     Ok(Outcome::new(case, &answer, strength(case, &folder)?))
