@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use qcar_runtime::discover::answer::{DetectionLimit, Finding, Probable, Rival, Verdict};
+use qcar_runtime::discover::locate::Shape;
 use qcar_runtime::discover::numbers::EVEN;
 use qcar_runtime::discover::observe::Kind;
 use qcar_runtime::discover::posterior::{Explanation, Tile};
@@ -436,8 +437,13 @@ fn listed(findings: &[Finding]) -> String {
 /// Sentence on the place that explains most.
 fn best_place(best: &PlaceStiffness) -> String {
     let share = 100.0 * best.explains;
-    let (at, like) = (best.site.name(), best.shape.name());
-    format!("something at {at} could explain {share:.1} % of the residuals of the sweeps; it would act like {like}\n")
+    let at = best.site.name();
+    let kind = match best.shape {
+        Shape::FrictionLike => "it would act like friction".to_string(),
+        Shape::Other => "its kind is not clear".to_string(),
+        _ => format!("it would act like {}", best.shape.name()),
+    };
+    format!("something at {at} could explain {share:.1} % of the residuals of the sweeps; {kind}\n")
 }
 
 /// Detection limits as a table.
