@@ -46,7 +46,7 @@ pub mod scales;
 // Models with effects added.
 pub mod workshop;
 // The residual of each sensor, in percent.
-mod left;
+mod sensor_residuals;
 // Units that the samples of a channel contradict.
 mod doubt;
 // Dense and named matrices.

@@ -4,7 +4,7 @@
 //! `pad_to_body.peak`, `mode.1.damping`. A [`Ground`] computes them for a model.
 
 // A model with the suspension's travel as an additional output.
-mod watched;
+mod travel;
 // The list of metrics.
 mod name;
 // The metrics of a time history.

@@ -1,6 +1,6 @@
 //! `qcar effects`: the catalogue of effects that a model may lack.
 
-mod described;
+mod description;
 
 use clap::Args;
 use clap_complete::engine::ArgValueCompleter;
@@ -14,7 +14,7 @@ use crate::json;
 use crate::table::Table;
 use crate::terminal::prose;
 use crate::verbs::Format;
-use described::EffectDescription;
+use description::EffectDescription;
 
 /// List the effects that a model may lack, and where each applies
 ///

@@ -19,25 +19,25 @@ use crate::verbs::{ModelArguments, each_once, frf};
 // The parameters that vary.
 mod vary;
 // The cleats.
-mod over;
+mod ride_name;
 // The part of the ensemble that this machine computes.
 mod part;
 // Rows of an earlier run that was stopped.
-mod kept;
+mod existing_rows;
 // Rows as CSV.
 mod csv;
 // Rows as Parquet, in row groups.
-mod grouped;
+mod parquet_rows;
 // The output file in either format.
 mod sink;
 // The description of an ensemble, by which a run is resumed.
 mod ledger;
 // All rows, block after block.
-mod filled;
+mod row_file;
 
 use ledger::Choice;
-use over::RideName;
 use part::Part;
+use ride_name::RideName;
 use vary::Vary;
 
 /// Compute metrics of many parameter sets over the same cleats, as a table
@@ -147,7 +147,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         part: arguments.part,
         program: &program,
     };
-    filled::fill(&ensemble, &choice, &arguments.out)
+    row_file::fill(&ensemble, &choice, &arguments.out)
 }
 
 /// # Errors
@@ -274,7 +274,7 @@ fn track(arguments: &Arguments) -> Result<Option<Track>, Failure> {
     if arguments.rides.is_empty() {
         return Ok(None);
     }
-    let rides = over::rides(&arguments.rides)?;
+    let rides = ride_name::rides(&arguments.rides)?;
     vary::refuse_facts(&arguments.vary)?;
     let Some(file) = &arguments.model.params else {
         let remedy = "add --params with a campaign, or a file that has [vehicle]";

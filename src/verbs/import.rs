@@ -19,7 +19,7 @@ mod guess;
 // The sensors of a campaign.
 mod sensors;
 // Properties of a sweep, from the motion of its pad.
-mod swept;
+mod sweep;
 // Kind of run of a file.
 mod kind;
 

@@ -24,9 +24,9 @@ use crate::verbs::TableFormat;
 // The axle with its values and roads.
 pub(crate) mod subject;
 // Metrics and parameters by name.
-pub(crate) mod chosen;
+pub(crate) mod selection;
 // Uncertainty of the parameters.
-pub(crate) mod doubts;
+pub(crate) mod uncertainty;
 // All sensitivities.
 pub(crate) mod gather;
 // The result as text and CSV.
@@ -34,9 +34,9 @@ pub(crate) mod render;
 // The result as figures.
 mod figure;
 
-use doubts::{Doubts, Temperatures};
 use gather::AnalysisSettings;
 use subject::{Subject, SubjectOptions};
+use uncertainty::{Doubts, Temperatures};
 
 /// Print how metrics of an axle depend on its parameters: elasticities, shares of variance, and uncertainty
 ///
@@ -179,16 +179,16 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         roads: &arguments.road,
     };
     let mut subject = Subject::of(&arguments.subject, &beneath)?;
-    chosen::keep_runs(&mut subject.courses, &arguments.runs)?;
+    selection::keep_runs(&mut subject.courses, &arguments.runs)?;
     let mut ground = subject.ground();
     if arguments.list {
         return Ok(list(&ground));
     }
     let metrics = match &arguments.metrics[..] {
-        [] => chosen::usual(&ground, &subject.roles),
-        names => chosen::metrics(&ground, names)?,
+        [] => selection::usual(&ground, &subject.roles),
+        names => selection::metrics(&ground, names)?,
     };
-    let parameters = chosen::parameters(subject.model.about(), &subject.values, &arguments.parameters)?;
+    let parameters = selection::parameters(subject.model.about(), &subject.values, &arguments.parameters)?;
     let doubts = doubts(&subject, &parameters, arguments)?;
     let plan = arguments.sobol.map(|designs| Plan {
         designs: designs as usize,
@@ -239,7 +239,7 @@ fn doubts(subject: &Subject, parameters: &[usize], arguments: &Arguments) -> Res
     let mut problems = Vec::new();
     let mut place = |name: &str, option: &'static str| {
         let problem = |found: &str, expected: &str, remedy: &str| flag(option, found, expected, remedy);
-        match chosen::parameter(subject.model.about(), &subject.values, name, problem) {
+        match selection::parameter(subject.model.about(), &subject.values, name, problem) {
             Ok(place) if parameters.contains(&place) => return Some(place),
             Ok(_) => {
                 let found = format!("`{name}`, which is not among the parameters");

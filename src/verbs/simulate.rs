@@ -22,7 +22,7 @@ use crate::terminal::prose;
 use crate::verbs::TableFormat;
 
 // Simulated and measured cleat runs compared.
-pub(crate) mod compared;
+pub(crate) mod comparison;
 // Sweeps and time histories, replayed.
 mod records;
 // Figures of sweeps and time histories.
@@ -34,7 +34,7 @@ mod spectra;
 // Rides over roads without a measured run.
 mod ground;
 
-use compared::Compared;
+use comparison::Compared;
 use records::Record;
 
 /// Simulate the runs of a campaign and compare them with the measurement
@@ -289,7 +289,7 @@ pub(crate) fn drive(
     let simulate = |on_progress: OnProgress<'_>| rides(&car, &drives, &Settings::default(), on_progress);
     let rides = while_counting(format!("{}: ride", campaign.name), simulate);
     let rides = checked(cleats, rides)?;
-    let compared = compared::compare(model.about(), &campaign.roles, cleats, &rides)?;
+    let compared = comparison::compare(model.about(), &campaign.roles, cleats, &rides)?;
     Ok(CleatResults { rides, compared })
 }
 

@@ -20,7 +20,7 @@ pub(crate) mod axle;
 // K&C cycles.
 mod loops;
 // The predicted ratios of the sweeps.
-pub(crate) mod swept;
+pub(crate) mod level_responses;
 // Measured and modelled ratios.
 pub(crate) mod rig;
 // Mode shapes.

@@ -23,7 +23,7 @@ mod file;
 // The targets as an optimisation task.
 mod plan;
 // The probability that targets hold.
-mod sure;
+mod design_uncertainty;
 // The result.
 mod gather;
 // The result as text and CSV.

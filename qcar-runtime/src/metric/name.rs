@@ -74,7 +74,7 @@ pub fn metrics(about: &About, modes: usize) -> Vec<Metric> {
         if let Some(travel) = about
             .outputs
             .iter()
-            .position(|output| output.name == super::watched::TRAVEL)
+            .position(|output| output.name == super::travel::TRAVEL)
         {
             all.push(Metric {
                 name: "suspension.travel".into(),

@@ -211,7 +211,7 @@ fn step<M: Model + ?Sized>(
     if leaving.contains(&true) {
         return leaving;
     }
-    formation.foresee();
+    formation.predict();
     let mut smooth = [false; LANES];
     for (place, lane) in lanes.iter_mut().enumerate() {
         if let Some(Lane { ride: (_, journey), .. }) = lane {

@@ -116,7 +116,7 @@ impl<'a, M: Model + ?Sized> Formation<'a, M> {
     }
 
     /// Predicts the states of all lanes at the ends of their steps.
-    pub fn foresee(&mut self) {
+    pub fn predict(&mut self) {
         over_lanes(Predictor(self));
     }
 
@@ -132,8 +132,8 @@ impl<'a, M: Model + ?Sized> Formation<'a, M> {
         if !smooth || self.found[lane] {
             return smooth;
         }
-        let foreseen = self.state.iter_mut().zip(self.method.ahead());
-        foreseen.for_each(|(value, row)| *value = row[lane]);
+        let predicted = self.state.iter_mut().zip(self.method.ahead());
+        predicted.for_each(|(value, row)| *value = row[lane]);
         let contact = rolling.contact_at(self.times[lane], &self.state);
         self.contacts.set(lane, &contact.unwrap_or_default());
         self.pieces.put(lane, rolling.road, rolling.piece.get());
@@ -182,7 +182,7 @@ impl<M: Model + ?Sized> Loops for Predictor<'_, '_, M> {
     #[inline(always)]
     fn run(self) {
         let of = self.0;
-        of.method.foresee();
+        of.method.predict();
         let ahead = of.method.ahead();
         let still = [NOTHING; 2];
         let along = of.wheel.x.map_or(still, |places| places.map(|place| ahead[place]));

@@ -379,7 +379,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_rim_comes_over_a_point_when_it_was_foreseen() {
+    fn the_rim_comes_over_a_point_at_the_predicted_time() {
         let wheel = Wheel {
             position: [1.2, 0.29],
             velocity: [8.0, -0.3],

@@ -332,7 +332,7 @@ impl<'a, M: Model + ?Sized> Variation<'a, M> {
     /// derivatives.
     fn advance_ride(&mut self) {
         let was = self.contact.given;
-        let foreseen: [f64; GIVEN] = array::from_fn(|axis| was[axis] + self.grew[axis]);
+        let predicted: [f64; GIVEN] = array::from_fn(|axis| was[axis] + self.grew[axis]);
         let acts = |given: [f64; GIVEN]| {
             let of = |&state: &usize| {
                 self.axle
@@ -346,12 +346,12 @@ impl<'a, M: Model + ?Sized> Variation<'a, M> {
             self.forced.iter().map(of).collect::<Vec<f64>>()
         };
         self.hold
-            .step(1, &self.x, [&acts(was), &acts(foreseen)], &mut self.next);
+            .step(1, &self.x, [&acts(was), &acts(predicted)], &mut self.next);
         std::mem::swap(&mut self.x, &mut self.next);
         self.time += self.spacing;
         self.contact = ContactInputs::new(&self.rolling, &self.touching, self.time, &mut self.x);
         let found = self.contact.given;
-        let off = self.solver() * Vector4::from_fn(|axis, _| found[axis] - foreseen[axis]);
+        let off = self.solver() * Vector4::from_fn(|axis, _| found[axis] - predicted[axis]);
         for (state, x) in self.x.iter_mut().enumerate() {
             *x += self
                 .of_contact
@@ -361,7 +361,7 @@ impl<'a, M: Model + ?Sized> Variation<'a, M> {
                 .map(|(by, off)| by * off)
                 .sum::<f64>();
         }
-        self.contact.given = array::from_fn(|axis| foreseen[axis] + off[axis]);
+        self.contact.given = array::from_fn(|axis| predicted[axis] + off[axis]);
         self.grew = array::from_fn(|axis| self.contact.given[axis] - was[axis]);
     }
 

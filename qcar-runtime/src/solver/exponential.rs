@@ -14,7 +14,7 @@ use std::array;
 pub use abreast::ExponentialAbreast;
 
 use super::matrix::{Lanes, Matrix};
-use super::polynomial::{EXTRAPOLATION, LAST_ORDER, PAST, Polynomial, THROUGH, UNFORESEEN, derivatives};
+use super::polynomial::{EXTRAPOLATION, LAST_ORDER, PAST, PREDICTION_ERROR, Polynomial, THROUGH, derivatives};
 use crate::vectors::{Loops, widest};
 
 /// A linear system `dx/dt = A x + B f(t, x)`, and the forces `f` that drive it.
@@ -150,14 +150,14 @@ impl<const F: usize> ExponentialAdams<F> {
     #[inline(always)]
     pub fn advance(&mut self, system: &mut impl Driven<F>, t: f64, relative: f64, absolute: &[f64]) -> bool {
         for part in &mut self.parts {
-            part.foresee(self.rung, &mut self.ahead);
+            part.predict(self.rung, &mut self.ahead);
         }
         let Some(force) = system.force(t, &self.ahead) else {
             return false;
         };
         let off = array::from_fn(|f| {
-            let foreseen = EXTRAPOLATION.iter().zip(&self.past[f]);
-            force[f] - foreseen.map(|(weight, force)| weight * force).sum::<f64>()
+            let predicted = EXTRAPOLATION.iter().zip(&self.past[f]);
+            force[f] - predicted.map(|(weight, force)| weight * force).sum::<f64>()
         });
         let good = self.is_within(off, relative, absolute);
         if good {
@@ -261,7 +261,7 @@ impl Part {
                     .sum()
             };
             for (row, &state) in self.states.iter().enumerate() {
-                let whole = answer(&UNFORESEEN, row);
+                let whole = answer(&PREDICTION_ERROR, row);
                 *made_of.entry_mut(row, place + PAST) = whole;
                 corrections.whole[force][state] = whole;
                 corrections.last_order[force][state] = answer(&LAST_ORDER, row);
@@ -277,7 +277,7 @@ impl Part {
 
     /// Predicts the next state.
     #[inline(always)]
-    fn foresee(&mut self, rung: usize, ahead: &mut [f64]) {
+    fn predict(&mut self, rung: usize, ahead: &mut [f64]) {
         widest(Product {
             blocks: &self.propagators[rung],
             by: &self.from,

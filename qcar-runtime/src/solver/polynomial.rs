@@ -11,7 +11,7 @@ pub(super) type Polynomial = [f64; PAST + 1];
 /// Polynomials that are one at one past point and zero at all others; the points are 0, -1, -2, ….
 pub(super) const THROUGH: [Polynomial; PAST] = through();
 /// Shape of the error of a prediction: zero at the past points and one at the end of the step.
-pub(super) const UNFORESEEN: Polynomial = rising(0.0);
+pub(super) const PREDICTION_ERROR: Polynomial = rising(0.0);
 /// Its reduction if the polynomial did not use the last past point.
 pub(super) const LAST_ORDER: Polynomial = rising(-1.0);
 /// Coefficients of the past values in the extrapolation by one step: binomial coefficients with alternating signs.

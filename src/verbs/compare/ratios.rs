@@ -19,8 +19,8 @@ use super::sides::{Measured, Side};
 use crate::progress::while_counting;
 use crate::report::rounded::{curve, rounded};
 use crate::verbs::frf;
+use crate::verbs::study::level_responses::{LevelResponses, between, swept_by};
 use crate::verbs::study::rig::{Polar, band, nearest, unwrapped};
-use crate::verbs::study::swept::{LevelResponses, between, swept_by};
 
 /// A channel of both models; if measured, in the run of the measurement.
 #[derive(Serialize)]

@@ -10,7 +10,7 @@ use super::Answer;
 use super::finding::described;
 use super::law::Law;
 use crate::json::Ordered;
-use crate::left::BeforeAfter;
+use crate::sensor_residuals::BeforeAfter;
 
 /// Learned laws, for residuals that no effect of the catalogue explains.
 #[derive(Serialize)]

@@ -20,7 +20,7 @@ use super::nuisances::{self, Nuisance};
 use super::places::{self, PlaceStiffness};
 use crate::effects;
 use crate::json::{self, Ordered};
-use crate::left::{BeforeAfter, SensorResidual, channel, left};
+use crate::sensor_residuals::{BeforeAfter, SensorResidual, channel, left};
 use crate::table::{Table, noted, number, or_dash};
 use crate::units;
 

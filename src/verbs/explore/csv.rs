@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Seek, SeekFrom, Write};
 
-use super::kept::ExistingRows;
+use super::existing_rows::ExistingRows;
 
 /// A CSV file that is written row by row.
 pub(super) struct Csv {

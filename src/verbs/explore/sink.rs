@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use qcar_runtime::error::{InputError, Place, Problem};
 
 use super::csv::Csv;
-use super::grouped::Grouped;
-use super::kept::ExistingRows;
+use super::existing_rows::ExistingRows;
+use super::parquet_rows::Grouped;
 use crate::files::finish;
 use crate::parquet::Shape;
 

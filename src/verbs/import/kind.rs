@@ -10,7 +10,7 @@ use qcar_signals::signal::Signal;
 use super::Measured;
 use super::guess::{Guess, quantity_of};
 use super::sensors::Sensors;
-use super::swept::{SweepParameters, parts, swept};
+use super::sweep::{SweepParameters, parts, swept};
 use crate::table::number;
 use crate::verbs::inspect::{Contents, Course};
 

@@ -10,8 +10,8 @@ use qcar_runtime::sensitivity::{
 };
 use serde::Serialize;
 
-use super::doubts::Doubts;
 use super::subject::Subject;
+use super::uncertainty::Doubts;
 use crate::json::Ordered;
 
 /// Smaller relative values are rounding errors.

@@ -11,7 +11,7 @@ use qcar_signals::mdf::write::Channel;
 use serde::Serialize;
 
 use super::Cleat;
-use super::compared::{Compared, Difference, Sizes};
+use super::comparison::{Compared, Difference, Sizes};
 use super::figure;
 use super::records::{Record, RecordError};
 use crate::files::put;

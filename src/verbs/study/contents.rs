@@ -20,7 +20,7 @@ use crate::verbs::diff::parts;
 use crate::verbs::discover::render as discovered;
 use crate::verbs::fit::render as fitted;
 use crate::verbs::kc::Gradient;
-use crate::verbs::simulate::compared::Compared;
+use crate::verbs::simulate::comparison::Compared;
 
 /// Data of the report.
 #[derive(Serialize)]

@@ -7,7 +7,7 @@ use qcar_runtime::fit::quality::{Quality, quality};
 use serde::Serialize;
 
 use super::gather::Study;
-use super::swept::{LevelResponses, swept_by};
+use super::level_responses::{LevelResponses, swept_by};
 use crate::progress::while_counting;
 use crate::report::rounded::curve;
 use crate::verbs::fit::files::{Compared, compare};

@@ -13,7 +13,7 @@ use super::rig::Ratio;
 use crate::table::{Table, number, or_dash};
 use crate::units;
 use crate::verbs::discover::render::{choice, sentence};
-use crate::verbs::simulate::compared::Sizes;
+use crate::verbs::simulate::comparison::Sizes;
 
 /// The summary.
 #[derive(Serialize)]

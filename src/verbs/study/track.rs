@@ -11,7 +11,7 @@ use serde::Serialize;
 use super::gather::{self, Study};
 use crate::report::rounded::curve;
 use crate::verbs::simulate::CleatResults;
-use crate::verbs::simulate::compared::{Compared, Pair, alignment, pairs};
+use crate::verbs::simulate::comparison::{Compared, Pair, alignment, pairs};
 
 /// All runs.
 #[derive(Serialize)]
@@ -180,7 +180,7 @@ fn histograms(before: &Compared, after: Option<&Compared>) -> BTreeMap<String, E
 }
 
 fn errors(name: &str, before: &Compared, after: Option<&Compared>) -> Errors {
-    let of = |compared: &Compared, error: fn(&crate::verbs::simulate::compared::Difference) -> f64| {
+    let of = |compared: &Compared, error: fn(&crate::verbs::simulate::comparison::Difference) -> f64| {
         let own = compared
             .runs
             .iter()

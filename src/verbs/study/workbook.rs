@@ -10,7 +10,7 @@ use crate::files::put;
 use crate::spreadsheet::{Cell, filled, table};
 use crate::units;
 use crate::verbs::fit::workbook::{FILE, sheets};
-use crate::verbs::simulate::compared::Difference;
+use crate::verbs::simulate::comparison::Difference;
 
 /// The sheet of the errors over cleats.
 const ERRORS: &str = "Cleat errors";

@@ -11,7 +11,7 @@ use serde::Serialize;
 use super::gather::Answer;
 use crate::report::rounded::curve;
 use crate::verbs::sensitivity::subject::Subject;
-use crate::verbs::simulate::compared::{Pair, alignment};
+use crate::verbs::simulate::comparison::{Pair, alignment};
 
 /// The data of the report.
 #[derive(Serialize)]

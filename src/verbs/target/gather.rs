@@ -8,8 +8,8 @@ use qcar_runtime::target::{
 };
 use serde::Serialize;
 
+use super::design_uncertainty::{self, DesignUncertainty};
 use super::plan::Plan;
-use super::sure::{self, DesignUncertainty};
 use crate::json::Ordered;
 use crate::progress::while_counting;
 use crate::verbs::sensitivity::gather::{UncertainMetric, doubted, rounded};
@@ -164,12 +164,12 @@ pub(super) fn gather(
         limits: plan.limits.clone(),
         couplings: plan.couplings.clone(),
     };
-    let intervals = |design: &[f64]| sure::intervals(subject, (ground, &axle), plan, design);
-    let found = sure::design(&mut task, &axle, seed, plan.sure)?;
+    let intervals = |design: &[f64]| design_uncertainty::intervals(subject, (ground, &axle), plan, design);
+    let found = design_uncertainty::design(&mut task, &axle, seed, plan.sure)?;
     let known = [found.design.clone()];
     let front = wanted[0].then(|| search_front(&task, plan, &known, seed));
     let doubts = intervals(&found.design);
-    let sureness = sure::sureness(subject, plan, &task, &axle, &found.design);
+    let sureness = design_uncertainty::sureness(subject, plan, &task, &axle, &found.design);
     let space = match wanted[1] && found.met {
         true => search_space(task.clone(), (&axle, &found), plan, &known, seed),
         false => None,
@@ -227,7 +227,7 @@ fn search_space(
     known: &[Vec<f64>],
     seed: u64,
 ) -> Option<Space> {
-    sure::keep_away(&mut task, axle, found, plan.probability);
+    design_uncertainty::keep_away(&mut task, axle, found, plan.probability);
     let settings = SpaceSettings {
         probability: plan.probability,
         seed,

@@ -9,7 +9,7 @@ mod limits;
 // Uncertainty of the parameters.
 mod uncertainty;
 // Front and solution space.
-mod questions;
+mod front_and_space;
 
 use qcar_runtime::error::{InputError, Problem};
 use qcar_runtime::metric::{Ground, Reading};
@@ -19,10 +19,10 @@ use toml::Spanned;
 
 use super::file::{Amount, AmountKind, Read};
 use crate::failure::Failure;
-use crate::verbs::sensitivity::chosen;
-use crate::verbs::sensitivity::doubts::Doubts;
 use crate::verbs::sensitivity::refused;
+use crate::verbs::sensitivity::selection;
 use crate::verbs::sensitivity::subject::Subject;
+use crate::verbs::sensitivity::uncertainty::Doubts;
 use limits::Sought;
 
 /// A task with the names and units of its parts.
@@ -180,7 +180,7 @@ impl<'a> Planner<'a, '_> {
     fn parameter(&mut self, name: &Spanned<String>, key: &str) -> Option<usize> {
         let read = self.read;
         let problem = |found: &str, expected: &str, remedy: &str| read.problem(name, key, found, expected, remedy);
-        let found = chosen::parameter(self.subject.model.about(), self.values(), name.get_ref(), problem);
+        let found = selection::parameter(self.subject.model.about(), self.values(), name.get_ref(), problem);
         found.map_err(|error| self.problems.extend(error.problems)).ok()
     }
 
@@ -222,7 +222,7 @@ impl<'a> Planner<'a, '_> {
             let read = self.read;
             let problem = |found: &str, expected: &str, remedy: &str| read.problem(name, key, found, expected, remedy);
             self.problems
-                .push(chosen::unknown(self.ground, name.get_ref(), problem));
+                .push(selection::unknown(self.ground, name.get_ref(), problem));
         }
         found
     }

@@ -7,8 +7,8 @@ use qcar_runtime::campaign::unit_of_fact;
 use qcar_runtime::model::About;
 use qcar_runtime::response::parameters::Values;
 
+use super::design_uncertainty::DesignUncertainty;
 use super::gather::{Answer, FrontAnswer, SpaceAnswer, Target};
-use super::sure::DesignUncertainty;
 use crate::table::{Table, counted, noted, number, or_dash};
 use crate::units;
 use crate::verbs::sensitivity::render::reach;

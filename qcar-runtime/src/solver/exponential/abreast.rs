@@ -124,7 +124,7 @@ impl<const F: usize> ExponentialAbreast<F> {
 
     /// Predicts the next states.
     #[inline(always)]
-    pub fn foresee(&mut self) {
+    pub fn predict(&mut self) {
         for part in &self.parts {
             let factors = part.from.as_chunks::<4>().0;
             let rows = part.propagator.chunks_exact(part.from.len());

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::Nonlinear;
 use crate::json::{self, Ordered};
-use crate::left;
+use crate::sensor_residuals;
 use crate::table::{Table, noted, number};
 use crate::verbs::fit::{minima, render};
 
@@ -108,8 +108,8 @@ impl Nonlinear {
     }
 
     fn left(&self) -> Vec<SensorResidual> {
-        let left = left::left(&self.evidence, [&self.found.explanation; 2]);
-        let own = |left: left::SensorResidual| SensorResidual {
+        let left = sensor_residuals::left(&self.evidence, [&self.found.explanation; 2]);
+        let own = |left: sensor_residuals::SensorResidual| SensorResidual {
             channel: left.channel,
             kind: left.kind,
             percent: left.after_percent,

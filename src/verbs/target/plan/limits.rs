@@ -5,7 +5,7 @@ use qcar_runtime::target::{Limit, Sense};
 use toml::Spanned;
 
 use super::{Planner, Wanted};
-use crate::verbs::sensitivity::chosen::fits;
+use crate::verbs::sensitivity::selection::fits;
 use crate::verbs::target::file;
 
 /// A target with its readings.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use toml::Spanned;
 
 use super::Planner;
-use crate::verbs::sensitivity::doubts::Doubts;
+use crate::verbs::sensitivity::uncertainty::Doubts;
 use crate::verbs::sensitivity::{Percent, per_kelvin};
 use crate::verbs::target::file::Uncertainty;
 

@@ -6,7 +6,7 @@ use qcar_runtime::ensemble::{Column, Ensemble, Rows};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::model::Model;
 
-use super::kept::ExistingRows;
+use super::existing_rows::ExistingRows;
 use super::ledger::{Choice, Ledger, Standing};
 use super::sink::{Sink, unfinished};
 use crate::failure::Failure;

@@ -3,7 +3,7 @@
 use std::fs::File;
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 
-use super::kept::ExistingRows;
+use super::existing_rows::ExistingRows;
 use crate::parquet::{GROUP, MAGIC, Shape};
 
 /// A Parquet file that is written group by group.
