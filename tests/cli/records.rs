@@ -139,6 +139,32 @@ fn what_is_to_be_fitted_without_any_range_is_refused() {
     assert!((found.parse::<f64>().unwrap() - 3.0).abs() < 0.03, "{found}");
 }
 
+/// Without noise, mass and stiffness are as uncertain as the gains of the two sensors, 0.7 % each, and the range of the
+/// damping is no matter for its value.
+#[test]
+fn gains_of_input_and_output_limit_what_a_record_determines() {
+    let folder = tempfile::tempdir().unwrap();
+    let parameters = parameter("m_body", 2.0, "kg", "range = [0.5, 2000.0]\n")
+        + &parameter("c_body", 2.0, "N s/m", "range = [1e-9, 1e9]\n")
+        + &parameter("k_body", 700.0, "N/m", "range = [0.5, 2000.0]\n");
+    campaign(
+        folder.path(),
+        "one_mass",
+        &parameters,
+        "band_limited = false",
+        &[&pushed()],
+    );
+    let line = ["fit", folder.path().to_str().unwrap(), "--all-runs", "--starts", "1"];
+    let fit: Value = serde_json::from_str(&succeeds(&[&line[..], &["--format", "json"]].concat())).unwrap();
+    for (name, truth) in [("m_body", 2.0), ("c_body", 3.0), ("k_body", 800.0)] {
+        let own = &fit["parameters"][name];
+        let [value, error] = ["value", "stderr"].map(|key| own[key].as_f64().unwrap());
+        assert!((value / truth - 1.0).abs() < 1e-4, "{name}: {own}");
+        let expected = 0.007 * 2_f64.sqrt();
+        assert!((error / value / expected - 1.0).abs() < 0.05, "{name}: {own}");
+    }
+}
+
 /// A mass that is let go, or struck: nothing drives it, and no sensor shows how fast it is at first.
 #[test]
 fn a_record_that_starts_in_motion_needs_no_input() {
