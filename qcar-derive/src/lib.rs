@@ -13,22 +13,7 @@ use syn::{LitStr, parse_macro_input};
 
 /// Compiles an axle that is written inline; the path of a family is relative to the package.
 ///
-/// ```
-/// qcar_derive::axle! {
-///     axle quarter {
-///         known param m: kg "Mass of the body";
-///         param k: N/m "Stiffness of the spring";
-///         direction z {
-///             road pad;
-///             mass body = m;
-///             link spring: body - pad { spring k; }
-///         }
-///     }
-/// }
-///
-/// let system = quarter::state_space(&quarter::Parameters { m: 400.0, k: 20e3 });
-/// assert_eq!(system.a[(quarter::state::VZ_BODY, quarter::state::Z_BODY)], -50.0);
-/// ```
+#[doc = include_str!("axle.md")]
 #[proc_macro]
 pub fn axle(tokens: proc_macro::TokenStream) -> proc_macro::TokenStream {
     let files = Files::new(&package());
@@ -42,11 +27,7 @@ pub fn axle(tokens: proc_macro::TokenStream) -> proc_macro::TokenStream {
 
 /// Compiles a model file; its path is relative to the package.
 ///
-/// ```
-/// qcar_derive::axle_file!("../models/axles/one_mass.axle");
-///
-/// assert_eq!(one_mass::STATES, 2);
-/// ```
+#[doc = include_str!("axle_file.md")]
 #[proc_macro]
 pub fn axle_file(tokens: proc_macro::TokenStream) -> proc_macro::TokenStream {
     let literal = parse_macro_input!(tokens as LitStr);

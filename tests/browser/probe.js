@@ -262,22 +262,31 @@
   // Text of less contrast with what it stands on than 4.5, and lines of less than 3.
   function faint() {
     const canvas = document.createElement('canvas').getContext('2d', { willReadFrequently: true });
-    const shade = (colour) => {
+    // A page has thousands of texts and a dozen colours.
+    const once = (compute) => {
+      const known = new Map();
+      return (of) => {
+        if (!known.has(of)) known.set(of, compute(of));
+        return known.get(of);
+      };
+    };
+    const shade = once((colour) => {
       canvas.clearRect(0, 0, 1, 1);
       canvas.fillStyle = colour;
       canvas.fillRect(0, 0, 1, 1);
       return [...canvas.getImageData(0, 0, 1, 1).data];
-    };
-    const light = (colour) =>
+    });
+    const light = once((colour) =>
       shade(colour)
         .slice(0, 3)
         .map((v) => (v / 255 <= 0.04045 ? v / 255 / 12.92 : ((v / 255 + 0.055) / 1.055) ** 2.4))
-        .reduce((sum, v, at) => sum + v * [0.2126, 0.7152, 0.0722][at], 0);
+        .reduce((sum, v, at) => sum + v * [0.2126, 0.7152, 0.0722][at], 0),
+    );
     const contrast = (a, b) => (Math.max(light(a), light(b)) + 0.05) / (Math.min(light(a), light(b)) + 0.05);
-    const ground = (element) => {
+    const ground = once((element) => {
       const own = getComputedStyle(element).backgroundColor;
       return shade(own)[3] === 255 || !element.parentElement ? own : ground(element.parentElement);
-    };
+    });
     const isText = (element) => [...element.childNodes].some((node) => node.nodeType === 3 && node.data.trim());
     const texts = [...document.querySelectorAll('#report *')].filter(
       (own) => isText(own) && own.getClientRects().length,

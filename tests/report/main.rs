@@ -228,17 +228,13 @@ fn units_change_everywhere() {
 #[test]
 fn a_class_is_told_as_one_of_several() {
     let Some(browser) = browser_or_word() else { return };
-    let folder = tempfile::tempdir().unwrap();
-    let (campaign, out) = (folder.path().join("campaign"), folder.path().join("out"));
-    fs::create_dir(&campaign).unwrap();
-    two_sensors(&campaign);
-    let said = qcar(&["study", campaign.to_str().unwrap()], &out);
-    let result: Value = serde_json::from_str(&fs::read_to_string(out.join("study.json")).unwrap()).unwrap();
+    let Studied { folder, said } = two_sensors();
+    let result: Value = serde_json::from_str(&fs::read_to_string(folder.join("study.json")).unwrap()).unwrap();
     let [best, other] = [0, 1].map(|place| {
         let own = &result["discover"]["effects"][place];
         format!("sensor gain at {}", own["at"].as_str().unwrap())
     });
-    let page = page_in(&out);
+    let page = page_in(&folder);
     for (width, theme) in PAGES {
         let found = look(&browser, &page, width, theme);
         let place = format!("{width} px, {theme}: {found} {said}");

@@ -38,9 +38,25 @@ impl Studied {
         Self::once("sensitivities", line, &[Path::new(campaign)])
     }
 
-    /// What a verb makes of a subject, unless that is there already from the same program and the same files.
+    /// A study of a campaign that a test makes from these files.
+    #[allow(dead_code, reason = "not every test program makes campaigns")]
+    pub fn made(name: &str, make: fn(&Path), of: &[&Path]) -> Self {
+        let campaign = place(name).join("campaign");
+        let make = || {
+            let _ = fs::remove_dir_all(&campaign);
+            fs::create_dir(&campaign).unwrap();
+            make(&campaign);
+        };
+        Self::once_after(make, name, ["study", campaign.to_str().unwrap()], of)
+    }
+
     fn once<const N: usize>(name: &str, arguments: [&str; N], of: &[&Path]) -> Self {
-        let place = Path::new(env!("CARGO_TARGET_TMPDIR")).join("studies").join(name);
+        Self::once_after(|| {}, name, arguments, of)
+    }
+
+    /// What a verb makes of a subject, unless that is there already from the same program and the same files.
+    fn once_after<const N: usize>(prepare: impl FnOnce(), name: &str, arguments: [&str; N], of: &[&Path]) -> Self {
+        let place = place(name);
         fs::create_dir_all(&place).unwrap();
         let [folder, printed, subject] = ["results", "printed", "subject"].map(|name| place.join(name));
         let _others_wait = {
@@ -50,12 +66,17 @@ impl Studied {
         };
         let present = state(of);
         if fs::read_to_string(&subject).ok().as_deref() != Some(&present) {
+            prepare();
             fs::write(&printed, run(arguments, &folder)).unwrap();
             fs::write(&subject, present).unwrap();
         }
         let said = fs::read_to_string(&printed).unwrap();
         Self { folder, said }
     }
+}
+
+fn place(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join("studies").join(name)
 }
 
 fn run<const N: usize>(arguments: [&str; N], out: &Path) -> String {

@@ -6,6 +6,8 @@ use std::path::Path;
 
 use flate2::read::GzDecoder;
 
+use super::studied::Studied;
+
 const LEVELS: [&str; 3] = ["025", "050", "100"];
 
 /// The sweeps of the shipped rig, with every sample of a column changed.
@@ -38,8 +40,13 @@ pub fn swept(folder: &Path, changed: &mut dyn FnMut(&str, f64) -> f64) {
     fs::write(folder.join("campaign.toml"), manifest).expect("a new file");
 }
 
-/// Only pad and wheel have vertical sensors, of which the wheel's shows 6 % too much.
-pub fn two_sensors(folder: &Path) {
+/// A study of the sweeps where only pad and wheel have vertical sensors, of which the wheel's shows 6 % too much.
+pub fn two_sensors() -> Studied {
+    let from = ["models/campaigns/axle_a_rig", file!()].map(Path::new);
+    Studied::made("two_sensors", write_two_sensors, &from)
+}
+
+fn write_two_sensors(folder: &Path) {
     swept(folder, &mut |name, value| {
         if name.starts_with("wheel") { 1.06 * value } else { value }
     });

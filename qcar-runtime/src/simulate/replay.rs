@@ -46,7 +46,7 @@ pub struct Replay<'a> {
     restarts: Vec<(usize, Vec<(usize, f64)>)>,
     readings: Vec<Reading>,
     /// The inputs at each node.
-    nodes: OnceLock<Vec<Vec<f64>>>,
+    nodes: OnceLock<Instants>,
 }
 
 /// Result of a replay, with a row for each parameter set.
@@ -54,13 +54,34 @@ pub struct Replayed {
     /// Samples of each reading; not finite after the model diverges even with the shortest steps.
     pub signals: Vec<Vec<f64>>,
     /// All states at each sample.
-    states: Vec<Vec<f64>>,
+    states: Instants,
     /// All states one sample after the last.
     end: Vec<f64>,
     /// Number of halvings of each step.
     halvings: Vec<u8>,
     /// Number of replays until the motion was periodic.
     periods: usize,
+}
+
+/// A row of values for each of many instants, all in one list: there are too many to allocate each.
+struct Instants {
+    width: usize,
+    values: Vec<f64>,
+}
+
+impl Instants {
+    fn count(&self) -> usize {
+        self.values.len().checked_div(self.width).unwrap_or(0)
+    }
+
+    fn at(&self, instant: usize) -> &[f64] {
+        &self.values[instant * self.width..][..self.width]
+    }
+
+    /// The values at one place of all rows.
+    fn of(&self, place: usize) -> impl Iterator<Item = f64> {
+        self.values.iter().skip(place).step_by(self.width).copied()
+    }
 }
 
 /// Step lengths of a replay.
@@ -181,10 +202,13 @@ impl<'a> Replay<'a> {
     }
 
     /// The inputs of the model at each node.
-    fn inputs(&self, steps: usize) -> Vec<Vec<f64>> {
+    fn inputs(&self, steps: usize) -> Instants {
         let rows = rows(self.model.about(), &self.recorded, &self.how, 2 * steps);
         let nodes = rows.first().map_or(0, Vec::len);
-        (0..nodes).map(|k| rows.iter().map(|row| row[k]).collect()).collect()
+        Instants {
+            width: rows.len(),
+            values: (0..nodes).flat_map(|k| rows.iter().map(move |row| row[k])).collect(),
+        }
     }
 
     /// Integrates from a state with some changed values.
@@ -204,11 +228,13 @@ impl<'a> Replay<'a> {
             (x.len(), about.inputs.len()),
             1.0 / (self.how.rate * steps as f64),
         );
-        let mut halvings = Vec::with_capacity(inputs.len() / 2);
-        let (mut signals, mut states) = (vec![Vec::new(); self.readings.len() * S::LANES], Vec::new());
+        let count = inputs.count();
+        let mut halvings = Vec::with_capacity(count / 2);
+        let mut signals = vec![Vec::new(); self.readings.len() * S::LANES];
+        let mut states = Vec::with_capacity(x.len() * self.how.samples);
         let mut apart = vec![0.0_f64; x.len()];
-        for (sample, nodes) in inputs.chunks(2 * steps).enumerate() {
-            let first = 2 * steps * sample;
+        for first in (0..count).step_by(2 * steps) {
+            let sample = first / (2 * steps);
             if let Some((_, seen)) = restarts.next_if(|(at, _)| *at == sample) {
                 seen.iter()
                     .for_each(|&(state, value)| lanes_of::<S>(&mut x, state).fill(value));
@@ -220,13 +246,13 @@ impl<'a> Replay<'a> {
                 }
             }
             if let Steps::Beside(other) = taken
-                && has_joined(&x, &other.states[sample], &mut apart)
+                && has_joined(&x, other.states.at(sample), &mut apart)
             {
                 let rest = signals.iter_mut().zip(&other.signals);
                 rest.for_each(|(signal, other)| signal.extend_from_slice(&other[sample..]));
                 break;
             }
-            stepper.sets.outputs(&x, &inputs[first], &mut y);
+            stepper.sets.outputs(&x, inputs.at(first), &mut y);
             for (signals, reading) in signals.chunks_exact_mut(S::LANES).zip(&self.readings) {
                 let read = match *reading {
                     Reading::Output(output) => lanes_of::<S>(&mut y, output),
@@ -237,10 +263,10 @@ impl<'a> Replay<'a> {
                     .zip(read)
                     .for_each(|(signal, read)| signal.push(*read));
             }
-            states.push(x.clone());
-            for node in (first..first + nodes.len()).step_by(2) {
-                let nodes = [node, node + 1, self.end(node, inputs.len())];
-                let inputs = nodes.map(|node| inputs[node].as_slice());
+            states.extend_from_slice(&x);
+            for node in (first..first + 2 * steps).step_by(2) {
+                let nodes = [node, node + 1, self.end(node, count)];
+                let inputs = nodes.map(|node| inputs.at(node));
                 halvings.push(match taken {
                     Steps::Found => stepper.find(inputs, &mut x),
                     Steps::Like(other) | Steps::Beside(other) => {
@@ -253,7 +279,10 @@ impl<'a> Replay<'a> {
         }
         Replayed {
             signals,
-            states,
+            states: Instants {
+                width: x.len(),
+                values: states,
+            },
             end: x,
             halvings,
             periods: 1,
@@ -275,8 +304,11 @@ impl<'a> Replay<'a> {
 impl Replayed {
     /// True if the motion ends as it began, or is not finite.
     fn repeats(&self) -> bool {
-        let most = |state: usize| self.states.iter().map(|x| x[state].abs()).fold(0.0, f64::max);
-        let first = self.states.first().unwrap_or(&self.end);
+        let most = |state: usize| self.states.of(state).map(f64::abs).fold(0.0, f64::max);
+        let first = match self.states.count() {
+            0 => &self.end,
+            _ => self.states.at(0),
+        };
         let mut ends = self.end.iter().zip(first).enumerate();
         ends.all(|(state, (end, first))| {
             (end - first).abs().partial_cmp(&(REPEATED * most(state))) != Some(Ordering::Greater)
