@@ -1,17 +1,16 @@
 //! Support for generated models.
 //!
-//! Here slices become arrays of fixed size, once for a call, so that no bounds check is left in straight-line code; and
-//! here a frequency response is cut into blocks of lines, over which that code runs in a loop that LLVM vectorises.
+//! Here slices become arrays of fixed size, once for a call, so that few bounds checks are left in straight-line code; and
+//! here that code runs over vectors of several parameter sets, or of several lines of a frequency response.
 
+use std::marker::PhantomData;
 use std::ops::Index;
 
 use nalgebra::SMatrix;
 
-use crate::model::{About, Entry, LANES, Lanes, Matrix, ResponseMut};
-use crate::vectors::{Loops, widest};
-
-/// How many lines of a frequency response are computed together: a cache line of each row.
-pub const LINES: usize = LANES;
+use crate::model::{About, Contact, Contacts, Entry, LANES, Lanes, Matrix, ResponseMut};
+pub use crate::vectors::Number;
+use crate::vectors::{Straight, in_vectors};
 
 /// The state-space form `dx = A x + B u`, `y = C x + D u` of a model with N states, M inputs and O outputs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,7 +115,18 @@ impl<T> Index<&str> for ByParameter<T> {
 
 /// A derivative of the piecewise cubic curve through points, of an order from 0 to 3, at `x`; beyond its ends it is a
 /// straight line. At a knot, those above the first are of the piece above it.
-pub fn table<const N: usize>(order: u8, x: f64, knots: &[f64; N], values: &[f64; N], slopes: &[f64; N]) -> f64 {
+#[inline(always)]
+pub fn table<V: Number, const N: usize>(order: u8, x: V, knots: &[f64; N], values: &[V; N], slopes: &[V; N]) -> V {
+    V::from_lanes(
+        #[inline(always)]
+        |lane| {
+            let of_lane = |points: &[V; N]| points.map(|point| point.lane(lane));
+            curve(order, x.lane(lane), knots, &of_lane(values), &of_lane(slopes))
+        },
+    )
+}
+
+fn curve<const N: usize>(order: u8, x: f64, knots: &[f64; N], values: &[f64; N], slopes: &[f64; N]) -> f64 {
     let right = knots.partition_point(|&knot| knot <= x);
     let left = right.saturating_sub(1);
     let t = x - knots[left];
@@ -179,61 +189,84 @@ pub fn no_response(about: &About, excitation: usize) -> ! {
     )
 }
 
-/// -1, 0 or 1: at rest there is no direction.
-#[inline]
-pub fn sign(value: f64) -> f64 {
-    if value == 0.0 { 0.0 } else { value.signum() }
+/// Where straight-line code reads `N` values.
+pub trait Entries<V, const N: usize> {
+    /// The value at a place.
+    fn at(&self, place: usize) -> V;
 }
 
-/// The straight-line code of a frequency response: `R` rows at a block of lines.
-///
-/// `compute` is to be inlined always: it is compiled once for each instruction set that [`respond`] knows.
-pub trait Block<const R: usize> {
-    /// The rows at these frequencies, rad/s.
-    fn compute(&self, frequencies: &[f64; LINES], rows: &mut [[f64; LINES]; R]);
-}
-
-/// Runs `block` over all lines and puts its rows where they are wanted: real parts, imaginary parts, and the same of
-/// the Jacobian.
-///
-/// # Panics
-///
-/// Where the rows of `into` are not `R` rows of `omega.len()` lines.
-#[inline]
-pub fn respond<const R: usize>(omega: &[f64], mut into: ResponseMut<'_>, block: &impl Block<R>) {
-    let jacobian = into.jacobian.as_ref().map_or(0, |(re, im)| re.len() + im.len());
-    assert_eq!(
-        into.re.len() + into.im.len() + jacobian,
-        R * omega.len(),
-        "a response has {R} rows"
-    );
-    let mut rows = [[0.0; LINES]; R];
-    let compute = |frequencies: &[f64; LINES], rows: &mut [[f64; LINES]; R]| {
-        widest(Lines {
-            block,
-            frequencies,
-            rows,
-        });
-    };
-    let (chunks, rest) = omega.as_chunks::<LINES>();
-    for (place, frequencies) in chunks.iter().enumerate() {
-        compute(frequencies, &mut rows);
-        scatter(&rows, &mut into, omega.len(), place * LINES, LINES);
+/// One set of values, for all lanes.
+impl<V: Number, const N: usize> Entries<V, N> for [f64; N] {
+    #[inline(always)]
+    fn at(&self, place: usize) -> V {
+        V::of(self[place])
     }
-    if let Some(&last) = rest.last() {
-        let mut frequencies = [last; LINES];
-        frequencies[..rest.len()].copy_from_slice(rest);
-        compute(&frequencies, &mut rows);
-        scatter(&rows, &mut into, omega.len(), chunks.len() * LINES, rest.len());
+}
+
+/// Values of several parameter sets, from one of them on.
+pub struct Rows<'a, const N: usize> {
+    rows: &'a [Lanes; N],
+    first: usize,
+}
+
+impl<'a, const N: usize> Rows<'a, N> {
+    /// Those from the set `first` on.
+    #[inline(always)]
+    pub fn new(rows: &'a [Lanes; N], first: usize) -> Self {
+        Rows { rows, first }
+    }
+}
+
+impl<V: Number, const N: usize> Entries<V, N> for Rows<'_, N> {
+    #[inline(always)]
+    fn at(&self, place: usize) -> V {
+        V::load(&self.rows[place][self.first..])
+    }
+}
+
+/// What tyres that roll give to the sets from `first` on.
+#[inline(always)]
+pub fn contact<V: Number>(contacts: &Contacts, first: usize) -> Contact<V> {
+    let of = |row: &Lanes| V::load(&row[first..]);
+    Contact {
+        s: of(&contacts.s),
+        v: of(&contacts.v),
+        force: [of(&contacts.force[0]), of(&contacts.force[1])],
+    }
+}
+
+/// Where straight-line code puts its `N` results.
+pub trait Results<V, const N: usize> {
+    /// Puts one at its place.
+    fn put(&mut self, place: usize, value: V);
+}
+
+impl<const N: usize> Results<f64, N> for [f64; N] {
+    #[inline(always)]
+    fn put(&mut self, place: usize, value: f64) {
+        self[place] = value;
+    }
+}
+
+/// Results of several parameter sets, from one of them on.
+pub struct RowsMut<'a, const N: usize> {
+    rows: &'a mut [Lanes; N],
+    first: usize,
+}
+
+impl<V: Number, const N: usize> Results<V, N> for RowsMut<'_, N> {
+    #[inline(always)]
+    fn put(&mut self, place: usize, value: V) {
+        value.store(&mut self.rows[place][self.first..]);
     }
 }
 
 /// Straight-line code for several parameter sets at once, with `R` results.
 ///
-/// `compute` is to be inlined always: it is compiled once for each instruction set that [`together`] knows.
+/// `compute` is to be inlined always: it is compiled once for each width of vectors that [`together`] knows.
 pub trait Sets<const R: usize> {
-    /// The results, a row for each.
-    fn compute(&self, rows: &mut [Lanes; R]);
+    /// The results of the sets from `first` on.
+    fn compute<V: Number>(&self, first: usize, out: &mut RowsMut<'_, R>);
 }
 
 /// Computes what is wanted of several parameter sets, with the widest vectors of this machine.
@@ -244,7 +277,7 @@ pub trait Sets<const R: usize> {
 #[inline]
 pub fn together<const R: usize>(sets: &impl Sets<R>, rows: &mut [Lanes]) {
     let rows = fixed_mut(rows);
-    widest(Together { sets, rows });
+    in_vectors(Together { sets, rows });
 }
 
 struct Together<'a, S, const R: usize> {
@@ -252,44 +285,166 @@ struct Together<'a, S, const R: usize> {
     rows: &'a mut [Lanes; R],
 }
 
-impl<S: Sets<R>, const R: usize> Loops for Together<'_, S, R> {
-    type Result = ();
-
+impl<S: Sets<R>, const R: usize> Straight for Together<'_, S, R> {
     #[inline(always)]
-    fn run(self) {
-        self.sets.compute(self.rows);
+    fn run<V: Number>(self) {
+        for group in 0..LANES / V::LANES {
+            let (rows, first) = (&mut *self.rows, group * V::LANES);
+            self.sets.compute::<V>(first, &mut RowsMut { rows, first });
+        }
     }
 }
 
-/// A block of lines that is to be computed.
-struct Lines<'a, B, const R: usize> {
-    block: &'a B,
-    frequencies: &'a [f64; LINES],
-    rows: &'a mut [[f64; LINES]; R],
+/// The straight-line code of a frequency response with `N` outputs, over `C` constants.
+///
+/// `compute` is to be inlined always: it is compiled once for each width of vectors that [`respond`] knows.
+pub trait Responds<const C: usize, const N: usize> {
+    /// The rows at these frequencies, rad/s.
+    fn compute<V: Number>(constants: &Rows<'_, C>, omega: V, out: &mut LinesMut<'_, N>);
 }
 
-impl<B: Block<R>, const R: usize> Loops for Lines<'_, B, R> {
-    type Result = ();
+/// The lines of a response of `N` outputs, from one of them on.
+pub struct LinesMut<'a, const N: usize> {
+    /// Real parts, imaginary parts, and those of the Jacobian.
+    parts: [&'a mut [f64]; 4],
+    lines: usize,
+    first: usize,
+}
 
+impl<V: Number, const N: usize, const R: usize> Results<V, R> for LinesMut<'_, N> {
     #[inline(always)]
-    fn run(self) {
-        self.block.compute(self.frequencies, self.rows);
+    fn put(&mut self, place: usize, value: V) {
+        let slopes = R / 2 - N;
+        let (part, row) = match place {
+            _ if place < N => (0, place),
+            _ if place < 2 * N => (1, place - N),
+            _ if place < 2 * N + slopes => (2, place - 2 * N),
+            _ => (3, place - 2 * N - slopes),
+        };
+        value.store(&mut self.parts[part][row * self.lines + self.first..]);
     }
 }
 
-/// Copies a block of `count` lines from `start` on to the rows of the whole response.
-fn scatter(rows: &[[f64; LINES]], into: &mut ResponseMut<'_>, lines: usize, start: usize, count: usize) {
-    let mut rows = rows.iter();
-    let (re, im) = match &mut into.jacobian {
-        Some((re, im)) => (&mut re[..], &mut im[..]),
-        None => (&mut [][..], &mut [][..]),
-    };
-    for part in [&mut into.re[..], &mut into.im[..], re, im] {
-        for (to, from) in part.chunks_exact_mut(lines).zip(&mut rows) {
-            match to[start..].first_chunk_mut::<LINES>() {
-                Some(whole) if count == LINES => *whole = *from,
-                _ => to[start..start + count].copy_from_slice(&from[..count]),
-            }
+/// A frequency response at all lines.
+///
+/// # Panics
+///
+/// Where `into` has no room for as many rows of `omega.len()` lines as there are results.
+pub fn respond<P: Responds<C, N>, const C: usize, const N: usize>(
+    constants: &[f64; C],
+    omega: &[f64],
+    into: ResponseMut<'_>,
+) {
+    let parts = parts(into);
+    let constants = &constants.map(|constant| [constant; LANES]);
+    let lines = omega.len();
+    if lines >= LANES {
+        let place = Place::Lines;
+        return at_lines::<P, C, N>(Lines {
+            constants,
+            omega,
+            parts,
+            place,
+        });
+    }
+    let Some(&last) = omega.last() else { return };
+    // Whole vectors, of which the lines that are wanted are copied.
+    let mut whole = [last; LANES];
+    whole[..lines].copy_from_slice(omega);
+    let mut found = parts.each_ref().map(|part| vec![0.0; part.len() / lines * LANES]);
+    at_lines::<P, C, N>(Lines {
+        constants,
+        omega: &whole,
+        parts: found.each_mut().map(|part| &mut part[..]),
+        place: Place::Lines,
+    });
+    for (part, found) in parts.into_iter().zip(&found) {
+        for (row, found) in part.chunks_exact_mut(lines).zip(found.chunks_exact(LANES)) {
+            row.copy_from_slice(&found[..lines]);
+        }
+    }
+}
+
+/// A frequency response of several parameter sets at one line: the rows of all real parts, of all imaginary parts, and of the same of the
+/// Jacobian.
+///
+/// # Panics
+///
+/// Where there are fewer rows than results.
+pub fn respond_sets<P: Responds<C, N>, const C: usize, const N: usize>(
+    constants: &[Lanes; C],
+    omega: f64,
+    rows: &mut [Lanes],
+) {
+    let slopes = (rows.len() / 2).saturating_sub(N);
+    let (re, rest) = rows.as_flattened_mut().split_at_mut(LANES * N);
+    let (im, rest) = rest.split_at_mut(LANES * N);
+    let (d_re, d_im) = rest.split_at_mut(LANES * slopes);
+    at_lines::<P, C, N>(Lines {
+        constants,
+        omega: &[omega; LANES],
+        parts: [re, im, d_re, d_im],
+        place: Place::Sets,
+    });
+}
+
+fn parts(into: ResponseMut<'_>) -> [&mut [f64]; 4] {
+    let (d_re, d_im) = into.jacobian.unwrap_or_default();
+    [into.re, into.im, d_re, d_im]
+}
+
+fn at_lines<P: Responds<C, N>, const C: usize, const N: usize>(lines: Lines<'_, C>) {
+    in_vectors(Response::<P, C, N> {
+        lines,
+        code: PhantomData,
+    });
+}
+
+/// What is computed of a response.
+struct Lines<'a, const C: usize> {
+    constants: &'a [Lanes; C],
+    omega: &'a [f64],
+    parts: [&'a mut [f64]; 4],
+    place: Place,
+}
+
+/// What stands side by side in a row.
+#[derive(Clone, Copy)]
+enum Place {
+    /// Lines of one parameter set, which is that of each lane.
+    Lines,
+    /// Parameter sets at one line.
+    Sets,
+}
+
+struct Response<'a, P, const C: usize, const N: usize> {
+    lines: Lines<'a, C>,
+    code: PhantomData<P>,
+}
+
+impl<P: Responds<C, N>, const C: usize, const N: usize> Straight for Response<'_, P, C, N> {
+    #[inline(always)]
+    fn run<V: Number>(self) {
+        let Lines {
+            constants,
+            omega,
+            mut parts,
+            place,
+        } = self.lines;
+        let lines = omega.len();
+        for group in 0..lines.div_ceil(V::LANES) {
+            // The last group is whole, too: it may compute again what the one before it has.
+            let first = (group * V::LANES).min(lines - V::LANES);
+            let set = match place {
+                Place::Lines => 0,
+                Place::Sets => first,
+            };
+            let mut out = LinesMut {
+                parts: parts.each_mut().map(|part| &mut **part),
+                lines,
+                first,
+            };
+            P::compute(&Rows::new(constants, set), V::load(&omega[first..]), &mut out);
         }
     }
 }

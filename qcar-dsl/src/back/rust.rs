@@ -33,7 +33,7 @@ pub fn module(compiled: &Compiled) -> String {
         typed::sizes(&compiled.about),
         parameters::parameters(compiled),
         typed::functions(compiled),
-        seam::implementation(compiled) + &seam::blocks(&compiled.about) + &seam::sets(&compiled.about),
+        seam::implementation(compiled) + &seam::responses(&compiled.about) + &seam::sets(&compiled.about),
         about::about(&compiled.about),
         format!("{STRAIGHT}{}}}\n", indent(&function::functions(compiled).join("\n"))),
     ];
@@ -56,17 +56,19 @@ pub fn module(compiled: &Compiled) -> String {
 
 const ALLOW: &str = "#[allow(clippy::all, unused, non_snake_case, reason = \"names and numbers are the model's, and not every model needs all\")]\n";
 
-const USES: &str =
-    "use ::qcar_runtime::generated::{Block, Jacobians, LINES, Sets, StateSpace, fixed, fixed_mut, no_response, respond, sign, together};
+const USES: &str = "use ::qcar_runtime::generated::{Entries, Jacobians, LinesMut, Number, Responds, Results, Rows, RowsMut, Sets, StateSpace};
+use ::qcar_runtime::generated::{contact, fixed, fixed_mut, no_response, respond, respond_sets, together};
 use ::qcar_runtime::model as seam;
-use ::qcar_runtime::model::{Entry, Matrix};
+use ::qcar_runtime::model::{Entry, Matrix, Model as _};
 use ::qcar_runtime::nalgebra::SVector;
 use ::std::borrow::Cow::Borrowed;
 ";
 
-const STRAIGHT: &str = "/// The straight-line functions, over arrays: no branch, no bounds check, no allocation.
+const STRAIGHT: &str = "/// The straight-line functions, over numbers or vectors of them: no branch, no allocation.
+///
+/// They are inlined into what knows the instructions for such vectors.
 pub mod straight {
-    use super::{CONSTANTS, INPUTS, LINES, PARAMETERS, STATES, seam, sign};
+    use super::{CONSTANTS, Entries, INPUTS, Number, PARAMETERS, Results, STATES, seam};
 
 ";
 

@@ -2,9 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::back::straight::{
-    FREQUENCIES, Function, Language, Leaf, Local, Locals, Pieces, Straight, Written, computed,
-};
+use crate::back::straight::{At, Function, Language, Local, Locals, Pieces, Straight, Written, computed, usual_name};
 use crate::expr;
 use crate::program::Value;
 use crate::program::schedule::Compiled;
@@ -14,133 +12,17 @@ use super::names::names;
 /// All straight-line functions of a model.
 pub fn functions(compiled: &Compiled) -> Vec<String> {
     let straight = Straight::new(compiled);
-    let mut functions = straight.functions("a block of lines");
-    let widths = functions.iter().map(|function| match function.is_response() {
-        true => Width::Lines,
-        false => Width::One,
-    });
-    let mut widths: Vec<Width> = widths.collect();
-    let sets = straight
-        .functions("")
-        .into_iter()
-        .filter(|own| SETS.contains(&own.name.as_str()));
-    functions.extend(sets.map(of_sets));
-    widths.resize(functions.len(), Width::Sets);
-    let all = functions.iter().zip(widths);
-    all.map(|(own, width)| written(&straight, own, width)).collect()
-}
-
-/// The functions that are there for several parameter sets at once, too.
-const SETS: [&str; 6] = [
-    "prepare",
-    "derivative",
-    "matrices",
-    "sensitivities",
-    "contact_force",
-    "rolling_derivative",
-];
-
-fn of_sets(function: Function) -> Function {
-    Function {
-        doc: format!(
-            "[`{}`] of several parameter sets at once, each with its own state and input.",
-            function.name
-        ),
-        name: format!("{}_sets", function.name),
-        ..function
-    }
-}
-
-fn written(straight: &Straight, function: &Function, width: Width) -> String {
-    self::function(&Signature {
-        function,
-        doc: function.doc.lines().map(String::from).collect(),
-        arguments: function
-            .arguments
-            .iter()
-            .map(|&argument| (argument, kind(argument, width)))
-            .collect(),
-        leaf: &|leaf| straight.local(leaf, function.arguments),
-        width,
-    })
-}
-
-fn kind(argument: &str, width: Width) -> &'static str {
-    match (argument, width) {
-        ("p", Width::Sets) => "&[[f64; LINES]; PARAMETERS]",
-        ("constants", Width::Sets) => "&[[f64; LINES]; CONSTANTS]",
-        ("x", Width::Sets) => "&[[f64; LINES]; STATES]",
-        ("u", Width::Sets) => "&[[f64; LINES]; INPUTS]",
-        ("s" | "v", Width::Sets) => "&[f64; LINES]",
-        ("contact", Width::Sets) => "&seam::Contacts",
-        ("p", _) => "&[f64; PARAMETERS]",
-        ("constants", _) => "&[f64; CONSTANTS]",
-        ("x", _) => "&[f64; STATES]",
-        ("u", _) => "&[f64; INPUTS]",
-        ("contact", _) => "&seam::Contact",
-        (FREQUENCIES, _) => "&[f64; LINES]",
-        _ => "f64",
-    }
-}
-
-/// Operations of a piece over several sets. Where a loop writes to some 250 rows, LLVM takes it for not worth vectors, and eight sets
-/// take as long as one after the other; with pieces of 30 to 100 operations they take a third.
-const OF_SETS: usize = 60;
-
-/// How much a function computes in a call. What is more than one is a loop that the optimiser vectorises.
-#[derive(Clone, Copy, PartialEq)]
-enum Width {
-    /// One of everything.
-    One,
-    /// A block of lines of a frequency response.
-    Lines,
-    /// A block of parameter sets.
-    Sets,
-}
-
-impl Width {
-    fn is_wide(self) -> bool {
-        self != Width::One
-    }
-
-    /// Whether an argument has another value for each turn of the loop.
-    fn varies(self, argument: &str) -> bool {
-        self == Width::Sets || argument == FREQUENCIES
-    }
-
-    /// What a turn is, for a count of operations.
-    fn turn(self) -> &'static str {
-        match self {
-            Width::One => "",
-            Width::Lines => " a line",
-            Width::Sets => " a set",
-        }
-    }
-}
-
-/// How a program becomes a function.
-struct Signature<'a> {
-    function: &'a Function<'a>,
-    /// Its doc comment, line by line; the operation count is added.
-    doc: Vec<String>,
-    /// Names and types of the arguments that it may read, `("p", "&[f64; 19]")`.
-    arguments: Vec<(&'static str, &'static str)>,
-    /// Where a leaf is read, and what a reviewer calls it.
-    leaf: &'a dyn Fn(Leaf) -> Local,
-    /// How much at once.
-    width: Width,
+    let functions = straight.functions("a line");
+    functions.iter().map(|own| function(&straight, own)).collect()
 }
 
 /// The Rust text of a program: one function, or one that calls several in turn.
-fn function(signature: &Signature) -> String {
-    let cut = match signature.width {
-        Width::Sets => Pieces::cut_to(signature.function.program, OF_SETS),
-        Width::One | Width::Lines => Pieces::cut(signature.function.program),
-    };
-    let pieces = (0..cut.pieces.len()).map(|piece| Printer::new(signature, &cut, piece).function());
+fn function(straight: &Straight, function: &Function) -> String {
+    let cut = Pieces::cut(function.program);
+    let pieces = (0..cut.pieces.len()).map(|piece| Printer::new(straight, function, &cut, piece).function());
     match cut.pieces.len() {
         1 => pieces.collect(),
-        _ => [caller(signature, &cut)]
+        _ => [caller(function, &cut)]
             .into_iter()
             .chain(pieces)
             .collect::<Vec<_>>()
@@ -149,94 +31,85 @@ fn function(signature: &Signature) -> String {
 }
 
 /// The function that hands its arguments to the pieces.
-fn caller(signature: &Signature, cut: &Pieces) -> String {
-    let names: Vec<&str> = signature.arguments.iter().map(|(name, _)| *name).collect();
-    let wide = signature.width.is_wide();
-    let zero = if wide { "[0.0; LINES]" } else { "0.0" };
-    let mut text = doc(&signature.doc, computed(cut.program).count(), signature.width) + inline(signature, true);
-    let arguments = signature
-        .arguments
-        .iter()
-        .map(|(name, kind)| format!("{name}: {kind}"))
-        .collect();
-    text += &heading(&signature.function.name, arguments, wide, cut.program.outputs.len());
-    text += &format!("    let mut kept = [{zero}; {}];\n", cut.kept.len());
+fn caller(function: &Function, cut: &Pieces) -> String {
+    let arguments = function.arguments.iter();
+    let arguments = arguments.map(|name| format!("{name}: {}", kind(name))).collect();
+    let mut text = doc(&function.doc, computed(cut.program).count());
+    text += &heading(&function.name, arguments, cut.program.outputs.len());
+    text += &format!("    let mut kept = [V::of(0.0); {}];\n", cut.kept.len());
     for piece in 1..=cut.pieces.len() {
         text += &format!(
-            "    {}_{piece}({}, &mut kept, out);\n",
-            signature.function.name,
-            names.join(", ")
+            "    V::apart(#[inline(always)] || {}_{piece}({}, &mut kept, out));\n",
+            function.name,
+            function.arguments.join(", ")
         );
     }
     text + "}\n"
 }
 
-fn doc(lines: &[String], count: usize, width: Width) -> String {
+/// What an argument is: entries for each lane, or a number of each.
+fn kind(argument: &str) -> &'static str {
+    match argument {
+        "p" => "&impl Entries<V, PARAMETERS>",
+        "constants" => "&impl Entries<V, CONSTANTS>",
+        "x" => "&impl Entries<V, STATES>",
+        "u" => "&impl Entries<V, INPUTS>",
+        "contact" => "&seam::Contact<V>",
+        _ => "V",
+    }
+}
+
+fn doc(text: &str, count: usize) -> String {
     let operations = if count == 1 { "operation" } else { "operations" };
-    let count = format!("{count} {operations}{}.", width.turn());
-    let lines = lines.iter().cloned().chain([String::new(), count]);
+    let count = format!("{count} {operations}.");
+    let lines = text.lines().chain(["", &count]);
     lines
         .map(|line| format!("{}\n", format!("/// {line}").trim_end()))
         .collect()
 }
 
-fn heading(name: &str, mut arguments: Vec<String>, lines: bool, results: usize) -> String {
-    arguments.push(format!("out: &mut {}", array(lines, results)));
-    format!("pub fn {name}({}) {{\n", arguments.join(", "))
-}
-
-/// The code over lines is inlined into one function for each instruction set, as loops one after the other, and what
-/// runs thousands of times in a ride into what asks for it; any other piece stays a function of its own, since inlined
-/// again they would be as long as the whole.
-fn inline(signature: &Signature, whole: bool) -> &'static str {
-    match (signature.width.is_wide(), whole) {
-        (true, _) => "#[inline(always)]\n",
-        (false, true) if signature.function.name == "rolling_derivative" => "#[inline]\n",
-        (false, true) => "",
-        (false, false) => "#[inline(never)]\n",
-    }
-}
-
-fn array(lines: bool, length: usize) -> String {
-    format!("[{}; {length}]", if lines { "[f64; LINES]" } else { "f64" })
+fn heading(name: &str, mut arguments: Vec<String>, results: usize) -> String {
+    arguments.push(format!("out: &mut impl Results<V, {results}>"));
+    format!(
+        "#[inline(always)]\npub fn {name}<V: Number>({}) {{\n",
+        arguments.join(", ")
+    )
 }
 
 /// Prints one piece of a program, which may be all of it.
 struct Printer<'a> {
-    signature: &'a Signature<'a>,
+    straight: &'a Straight<'a>,
+    function: &'a Function<'a>,
     cut: &'a Pieces<'a>,
     piece: usize,
     locals: Locals,
 }
 
 impl<'a> Printer<'a> {
-    fn new(signature: &'a Signature<'a>, cut: &'a Pieces<'a>, piece: usize) -> Self {
-        let free = names(signature.function.arguments);
+    fn new(straight: &'a Straight<'a>, function: &'a Function<'a>, cut: &'a Pieces<'a>, piece: usize) -> Self {
+        let free = names(function.arguments);
+        let leaf = |leaf| straight.local(leaf, function.arguments);
         Printer {
-            signature,
+            straight,
+            function,
             cut,
             piece,
-            locals: Locals::new(signature.function, cut, piece, free, signature.leaf),
+            locals: Locals::new(function, cut, piece, free, &leaf),
         }
     }
 
     fn function(&self) -> String {
-        let (name, width) = (&self.signature.function.name, self.signature.width);
+        let name = &self.function.name;
         let count = self.cut.pieces[self.piece].len();
         let results = self.cut.program.outputs.len();
         if self.cut.pieces.len() == 1 {
-            let (doc, heading) = (
-                doc(&self.signature.doc, count, width),
-                heading(name, self.arguments(), width.is_wide(), results),
-            );
-            return doc + inline(self.signature, true) + &heading + &self.body();
+            return doc(&self.function.doc, count) + &heading(name, self.arguments(), results) + &self.body();
         }
         let number = self.piece + 1;
-        let kept = format!("kept: &mut {}", array(width.is_wide(), self.cut.kept.len()));
+        let kept = format!("kept: &mut [V; {}]", self.cut.kept.len());
         let arguments = self.arguments().into_iter().chain([kept]).collect();
-        doc(&[format!("Piece {number} of [`{name}`].")], count, width)
-            + inline(self.signature, false)
-            + &heading(&format!("{name}_{number}"), arguments, width.is_wide(), results)
+        doc(&format!("Piece {number} of [`{name}`]."), count)
+            + &heading(&format!("{name}_{number}"), arguments, results)
             + &self.body()
     }
 
@@ -244,67 +117,33 @@ impl<'a> Printer<'a> {
     fn arguments(&self) -> Vec<String> {
         let read: BTreeSet<&str> = self.leaves().into_iter().map(|(local, _)| local.argument).collect();
         let underscore = |name: &str| if read.contains(name) { "" } else { "_" };
-        let arguments = self.signature.arguments.iter();
+        let arguments = self.function.arguments.iter();
         arguments
-            .map(|(name, kind)| format!("{}{name}: {kind}", underscore(name)))
+            .map(|name| format!("{}{name}: {}", underscore(name), kind(name)))
             .collect()
     }
 
     fn leaves(&self) -> Vec<(Local, Value)> {
         let read = self.cut.read(self.piece).into_iter();
-        read.map(|(leaf, value)| ((self.signature.leaf)(leaf), value)).collect()
+        read.map(|(leaf, value)| (self.straight.local(leaf, self.function.arguments), value))
+            .collect()
     }
 
     fn body(&self) -> String {
-        let (a_line, once): (Vec<_>, Vec<_>) = self
-            .leaves()
-            .into_iter()
-            .partition(|(local, _)| self.signature.width.varies(local.argument));
-        let read = |(local, value): &(Local, Value)| {
-            let line = if self.signature.width.varies(local.argument) {
-                self.line()
-            } else {
-                ""
+        let leaves = self.leaves().into_iter().map(|(local, value)| {
+            let at = match local.at {
+                At::Entry(entry) => format!(".at({entry})"),
+                At::Whole | At::Member(_) => local.at.to_string(),
             };
-            format!("let {} = {}{}{line};", self.local(*value), local.argument, local.at)
-        };
-        let once: Vec<String> = once.iter().map(read).collect();
-        let kept = self.cut.inherited(self.piece).into_iter().map(|value| {
-            format!(
-                "let {} = kept[{}]{};",
-                self.local(value),
-                self.cut.kept[&value],
-                self.line()
-            )
+            format!("let {} = {}{at};", self.local(value), local.argument)
         });
-        let stored = self
-            .cut
-            .stored(self.piece)
-            .into_iter()
-            .map(|(place, value)| self.store(place, value));
-        let computed = self.cut.pieces[self.piece]
-            .iter()
-            .flat_map(|&value| self.compute(value));
-        let repeated: Vec<String> = a_line
-            .iter()
-            .map(read)
-            .chain(kept)
-            .chain(stored)
-            .chain(computed)
-            .collect();
-        match self.signature.width.is_wide() {
-            true => format!(
-                "{}    for line in 0..LINES {{\n{}    }}\n}}\n",
-                indent(&once, 1),
-                indent(&repeated, 2)
-            ),
-            false => format!("{}{}}}\n", indent(&once, 1), indent(&repeated, 1)),
-        }
-    }
-
-    /// The index of the line or the set, where there are several.
-    fn line(&self) -> &'static str {
-        if self.signature.width.is_wide() { "[line]" } else { "" }
+        let kept = self.cut.inherited(self.piece).into_iter();
+        let kept = kept.map(|value| format!("let {} = kept[{}];", self.local(value), self.cut.kept[&value]));
+        let stored = self.cut.stored(self.piece).into_iter();
+        let stored = stored.map(|(place, value)| self.store(place, value));
+        let computed = self.cut.pieces[self.piece].iter();
+        let computed = computed.flat_map(|&value| self.compute(value));
+        indent(leaves.chain(kept).chain(stored).chain(computed)) + "}\n"
     }
 
     /// The statement that computes a value, and those that put it where it is wanted.
@@ -315,7 +154,7 @@ impl<'a> Printer<'a> {
             self.written().operation(value)
         )];
         if let Some(place) = self.cut.kept.get(&value) {
-            statements.push(format!("kept[{place}]{} = {};", self.line(), self.local(value)));
+            statements.push(format!("kept[{place}] = {};", self.local(value)));
         }
         let results = self.cut.results(value).iter();
         statements.extend(results.map(|&place| self.store(place, value)));
@@ -323,15 +162,10 @@ impl<'a> Printer<'a> {
     }
 
     fn store(&self, place: usize, value: Value) -> String {
-        let comment = self
-            .signature
-            .function
-            .results
-            .get(place)
-            .map(|result| format!(" // {result}"));
+        let comment = self.function.results.get(place);
+        let comment = comment.map(|result| format!(" // {result}"));
         format!(
-            "out[{place}]{} = {};{}",
-            self.line(),
+            "out.put({place}, {});{}",
             self.written().operand(value),
             comment.unwrap_or_default()
         )
@@ -355,32 +189,41 @@ struct Rust;
 
 impl Language for Rust {
     fn number(&self, number: f64) -> String {
-        match number {
-            _ if number.is_nan() => "f64::NAN".into(),
-            _ if number == f64::INFINITY => "f64::INFINITY".into(),
-            _ if number == f64::NEG_INFINITY => "f64::NEG_INFINITY".into(),
-            _ => format!("{number:?}"),
-        }
+        format!("V::of({})", self.knot(number))
     }
 
     fn call(&self, function: expr::Function, a: &str) -> String {
-        format!("{}({a})", function_path(function))
+        let name = match function {
+            expr::Function::Ln => "ln",
+            other => usual_name(other),
+        };
+        format!("V::{name}({a})")
     }
 
     fn power(&self, a: &str, b: &str) -> String {
-        format!("f64::powf({a}, {b})")
+        format!("V::powf({a}, {b})")
     }
 
     fn smaller(&self, a: &str, b: &str) -> String {
-        format!("f64::min({a}, {b})")
+        format!("V::min({a}, {b})")
     }
 
     fn larger(&self, a: &str, b: &str) -> String {
-        format!("f64::max({a}, {b})")
+        format!("V::max({a}, {b})")
     }
 
     fn choice(&self, test: &str, a: &str, b: &str) -> String {
-        format!("if {test} > 0.0 {{ {a} }} else {{ {b} }}")
+        format!("V::choose({test}, {a}, {b})")
+    }
+
+    /// The same in every lane.
+    fn knot(&self, knot: f64) -> String {
+        match knot {
+            _ if knot.is_nan() => "f64::NAN".into(),
+            _ if knot == f64::INFINITY => "f64::INFINITY".into(),
+            _ if knot == f64::NEG_INFINITY => "f64::NEG_INFINITY".into(),
+            _ => format!("{knot:?}"),
+        }
     }
 
     /// Each row from a line of its own on.
@@ -399,23 +242,7 @@ const ENTRIES: usize = 8;
 /// What interpolates at run time.
 const TABLE: &str = "::qcar_runtime::generated::table";
 
-fn indent(statements: &[String], depth: usize) -> String {
-    let margin = "    ".repeat(depth);
-    let lines = statements.iter().flat_map(|statement| statement.lines());
-    lines.flat_map(|line| [margin.as_str(), line, "\n"]).collect()
-}
-
-fn function_path(f: expr::Function) -> &'static str {
-    match f {
-        expr::Function::Abs => "f64::abs",
-        expr::Function::Sign => "sign",
-        expr::Function::Sqrt => "f64::sqrt",
-        expr::Function::Exp => "f64::exp",
-        expr::Function::Ln => "f64::ln",
-        expr::Function::Sin => "f64::sin",
-        expr::Function::Cos => "f64::cos",
-        expr::Function::Tan => "f64::tan",
-        expr::Function::Atan => "f64::atan",
-        expr::Function::Tanh => "f64::tanh",
-    }
+fn indent(statements: impl Iterator<Item = String>) -> String {
+    let indented = |statement: String| -> String { statement.lines().flat_map(|line| ["    ", line, "\n"]).collect() };
+    statements.map(indented).collect()
 }

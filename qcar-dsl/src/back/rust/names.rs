@@ -3,19 +3,7 @@
 use crate::back::straight::Names;
 
 /// What a function refers to beside its own variables.
-const RESERVED: &[&str] = &[
-    "CONSTANTS",
-    "INPUTS",
-    "LINES",
-    "PARAMETERS",
-    "STATES",
-    "f64",
-    "kept",
-    "line",
-    "out",
-    "seam",
-    "sign",
-];
+const RESERVED: &[&str] = &["CONSTANTS", "INPUTS", "PARAMETERS", "STATES", "kept", "out", "seam"];
 
 /// The names of local variables beside these arguments.
 pub fn names(arguments: &[&'static str]) -> Names {

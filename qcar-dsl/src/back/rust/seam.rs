@@ -57,49 +57,59 @@ fn response(about: &About) -> String {
     if about.responses.is_empty() {
         return String::new();
     }
-    let arm = |place: usize, suffix: &str| {
-        let block = camel(&response_name(about, place, suffix));
+    let arm = |driver: &str, place: usize, suffix: &str| {
+        let code = camel(&response_name(about, place, suffix));
         format!(
-            "            ({place}, {}) => respond(omega, into, &{block}(constants)),\n",
+            "            ({place}, {}) => {driver}::<{code}, _, _>(constants, omega, into),\n",
             !suffix.is_empty()
         )
     };
-    let arms: String = (0..about.responses.len())
-        .flat_map(|place| [arm(place, ""), arm(place, "_jacobian")])
-        .collect();
+    let arms = |driver: &str| -> String {
+        let both = |place| [arm(driver, place, ""), arm(driver, place, "_jacobian")];
+        (0..about.responses.len()).flat_map(both).collect()
+    };
     format!(
         "
     fn response(&self, excitation: usize, constants: &[f64], omega: &[f64], into: seam::ResponseMut<'_>) {{
         let constants = fixed(constants);
         match (excitation, into.jacobian.is_some()) {{
-{arms}            _ => no_response(&ABOUT, excitation),
+{each}            _ => no_response(&ABOUT, excitation),
         }}
     }}
-"
+
+    fn line_sets(&self, excitation: usize, constants: &[seam::Lanes], omega: f64, with_jacobian: bool, into: &mut [seam::Lanes]) {{
+        let constants = fixed(constants);
+        match (excitation, with_jacobian) {{
+{sets}            _ => no_response(&ABOUT, excitation),
+        }}
+    }}
+",
+        each = arms("respond"),
+        sets = arms("respond_sets"),
     )
 }
 
-/// The straight-line functions of the responses as types, which the runtime compiles once for each instruction set.
-pub fn blocks(about: &About) -> String {
-    let block = |place: usize, suffix: &str| {
-        let (function, layout) = (response_name(about, place, suffix), &about.responses[place]);
-        let jacobian = if suffix.is_empty() { 0 } else { layout.jacobian.len() };
-        let (name, rows) = (camel(&function), 2 * (layout.outputs.len() + jacobian));
+/// The straight-line functions of the responses as types, which the runtime compiles once for each width of vectors.
+pub fn responses(about: &About) -> String {
+    let code = |place: usize, suffix: &str| {
+        let function = response_name(about, place, suffix);
         format!(
             "
-struct {name}<'a>(&'a [f64; CONSTANTS]);
+struct {name};
 
-impl Block<{rows}> for {name}<'_> {{
+impl Responds<CONSTANTS, {outputs}> for {name} {{
     #[inline(always)]
-    fn compute(&self, frequencies: &[f64; LINES], rows: &mut [[f64; LINES]; {rows}]) {{
-        straight::{function}(self.0, frequencies, rows);
+    fn compute<V: Number>(constants: &Rows<'_, CONSTANTS>, omega: V, out: &mut LinesMut<'_, {outputs}>) {{
+        straight::{function}::<V>(constants, omega, out);
     }}
 }}
-"
+",
+            name = camel(&function),
+            outputs = about.responses[place].outputs.len(),
         )
     };
     (0..about.responses.len())
-        .flat_map(|place| [block(place, ""), block(place, "_jacobian")])
+        .flat_map(|place| [code(place, ""), code(place, "_jacobian")])
         .collect()
 }
 
@@ -107,8 +117,10 @@ const PARAMETERS: &str = "[seam::Lanes; PARAMETERS]";
 const CONSTANTS: &str = "[seam::Lanes; CONSTANTS]";
 const STATES: &str = "[seam::Lanes; STATES]";
 const INPUTS: &str = "[seam::Lanes; INPUTS]";
+const LANES: &str = "seam::Lanes";
+const CONTACTS: &str = "seam::Contacts";
 
-/// The functions of several parameter sets, of which the runtime compiles each once for each instruction set.
+/// The functions of several parameter sets, of which the runtime compiles each once for each width of vectors.
 pub fn sets(about: &About) -> String {
     let of_model: [(&str, &[&str], usize); 4] = [
         ("prepare", &[PARAMETERS], about.constants),
@@ -121,10 +133,10 @@ pub fn sets(about: &About) -> String {
         ),
     ];
     let of_contact: [(&str, &[&str], usize); 2] = [
-        ("contact_force", &[CONSTANTS, STATES, "seam::Lanes", "seam::Lanes"], 1),
+        ("contact_force", &[CONSTANTS, STATES, LANES, LANES], 1),
         (
             "rolling_derivative",
-            &[CONSTANTS, STATES, INPUTS, "seam::Contacts"],
+            &[CONSTANTS, STATES, INPUTS, CONTACTS],
             about.states.len(),
         ),
     ];
@@ -132,15 +144,20 @@ pub fn sets(about: &About) -> String {
     let functions = of_model.iter().chain(of_contact.iter().filter(|_| rolls));
     let written = functions.map(|(function, types, rows)| {
         let fields: Vec<String> = types.iter().map(|own| format!("&'a {own}")).collect();
-        let arguments: Vec<String> = (0..types.len()).map(|place| format!("self.{place}")).collect();
+        let arguments = types.iter().enumerate().map(|(place, own)| match *own {
+            LANES => format!("V::load(&self.{place}[first..])"),
+            CONTACTS => format!("&contact(self.{place}, first)"),
+            _ => format!("&Rows::new(self.{place}, first)"),
+        });
+        let arguments: Vec<String> = arguments.collect();
         format!(
             "
 struct {name}<'a>({fields});
 
 impl Sets<{rows}> for {name}<'_> {{
     #[inline(always)]
-    fn compute(&self, rows: &mut [seam::Lanes; {rows}]) {{
-        straight::{function}_sets({arguments}, rows);
+    fn compute<V: Number>(&self, first: usize, out: &mut RowsMut<'_, {rows}>) {{
+        straight::{function}::<V>({arguments}, out);
     }}
 }}
 ",
@@ -188,7 +205,7 @@ const ROLLING: &str = "
     }
 
     fn contact_force_sets(&self, constants: &[seam::Lanes], x: &[seam::Lanes], s: &seam::Lanes, v: &seam::Lanes) -> seam::Lanes {
-        let mut force = [[0.0; LINES]];
+        let mut force = [seam::Lanes::default()];
         together(&ContactForceSets(fixed(constants), fixed(x), s, v), &mut force);
         force[0]
     }

@@ -4,6 +4,8 @@ use qcar_model::{About, Matrix};
 
 use crate::program::schedule::Compiled;
 
+use super::names::camel;
+
 /// Sizes, and the places of states, inputs and outputs.
 pub fn sizes(about: &About) -> String {
     let size = |name: &str, what: &str, size: usize| {
@@ -51,7 +53,7 @@ impl Prepared {{
     /// Makes a parameter set ready.
     pub fn new(p: &Parameters) -> Prepared {{
         let mut constants = [0.0; CONSTANTS];
-        straight::prepare(&p.to_array(), &mut constants);
+        {model}.prepare(&p.to_array(), &mut constants);
         Prepared(constants)
     }}
 }}
@@ -63,7 +65,7 @@ pub fn derivative(
     u: &SVector<f64, INPUTS>,
 ) -> SVector<f64, STATES> {{
     let mut dx = SVector::zeros();
-    straight::derivative(&prepared.0, &x.data.0[0], &u.data.0[0], &mut dx.data.0[0]);
+    {model}.derivative(&prepared.0, &x.data.0[0], &u.data.0[0], &mut dx.data.0[0]);
     dx
 }}
 
@@ -74,14 +76,14 @@ pub fn outputs(
     u: &SVector<f64, INPUTS>,
 ) -> SVector<f64, OUTPUTS> {{
     let mut y = SVector::zeros();
-    straight::outputs(&prepared.0, &x.data.0[0], &u.data.0[0], &mut y.data.0[0]);
+    {model}.outputs(&prepared.0, &x.data.0[0], &u.data.0[0], &mut y.data.0[0]);
     y
 }}
 
 /// A = ∂f/∂x, B = ∂f/∂u, C = ∂h/∂x and D = ∂h/∂u{at}.
 pub fn state_space(p: &Parameters{point}) -> StateSpace<STATES, INPUTS, OUTPUTS> {{
     let mut nonzeros = [0.0; {matrices}];
-    straight::matrices(&p.to_array(), {zero}, &mut nonzeros);
+    {model}.matrices(&p.to_array(), {zero}, &mut nonzeros);
     let mut system = StateSpace::zeros();
 {scatter}    system
 }}
@@ -89,7 +91,7 @@ pub fn state_space(p: &Parameters{point}) -> StateSpace<STATES, INPUTS, OUTPUTS>
 /// The nonzeros of the parameter Jacobians of A, B, C and D{at}, in the order of [`SENSITIVITIES`].
 pub fn sensitivities(p: &Parameters{point}) -> [f64; {sensitivities}] {{
     let mut nonzeros = [0.0; {sensitivities}];
-    straight::sensitivities(&p.to_array(), {zero}, &mut nonzeros);
+    {model}.sensitivities(&p.to_array(), {zero}, &mut nonzeros);
     nonzeros
 }}
 
@@ -98,6 +100,7 @@ pub fn jacobians(p: &Parameters{point}) -> Jacobians<STATES, INPUTS, OUTPUTS> {{
     Jacobians::new(&Parameters::NAMES, &SENSITIVITIES, &sensitivities({given}))
 }}
 ",
+        model = camel(&about.name),
         given = if about.linear { "p" } else { "p, x, u" },
         matrices = about.matrices.len(),
         scatter = scatter(about),

@@ -28,6 +28,10 @@ pub trait Language {
     }
     /// `a` where the test is above zero, else `b`.
     fn choice(&self, test: &str, a: &str, b: &str) -> String;
+    /// The abscissa of a point of a curve.
+    fn knot(&self, knot: f64) -> String {
+        self.number(knot)
+    }
     /// The derivative of an order of a curve, from abscissae, ordinates and slopes.
     fn table(&self, order: u8, x: &str, rows: [Vec<String>; 3]) -> String;
 }
@@ -85,7 +89,7 @@ impl Written<'_> {
             Op::Table(order, x, curve) => {
                 let curve = &self.program.curves[curve as usize];
                 let entries = |values: &[Value]| values.iter().map(|&entry| at(entry).into()).collect();
-                let knots = curve.knots().map(|knot| self.language.number(knot)).collect();
+                let knots = curve.knots().map(|knot| self.language.knot(knot)).collect();
                 let rows = [knots, entries(&curve.values), entries(&curve.slopes)];
                 self.language.table(order, &at(x), rows)
             }
