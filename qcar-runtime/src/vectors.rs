@@ -1,14 +1,22 @@
 //! Loops and straight-line code with the widest vectors of the machine that they run on.
 
-// A number, or several at a time.
+// A single number.
 mod number;
-// Several at a time, with the vectors of x86-64.
+// The results of a response.
+mod lines;
+// Four numbers, on any processor.
+#[cfg(any(test, not(target_arch = "x86_64")))]
+mod portable;
+// Four and eight numbers, with the instructions of x86-64.
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
-use std::marker::PhantomData;
-
-pub use number::Number;
+pub use lines::LinesMut;
+pub use number::{sign, table};
+#[cfg(not(target_arch = "x86_64"))]
+pub use portable::{Four, Four as Eight};
+#[cfg(target_arch = "x86_64")]
+pub use x86::{Eight, Four};
 
 /// Loops over plain numbers that gain by wide vectors.
 pub(crate) trait Loops {
@@ -44,50 +52,33 @@ pub(crate) fn over_lanes<L: Loops>(loops: L) -> L::Result {
     widest(loops)
 }
 
-/// Straight-line code over numbers of any width.
-pub(crate) trait Straight {
-    /// To be inlined always: it is compiled once for each width that [`in_vectors`] knows.
-    fn run<V: Number>(self);
+/// How many numbers straight-line code computes together.
+#[derive(Clone, Copy)]
+#[cfg_attr(
+    not(target_arch = "x86_64"),
+    allow(dead_code, reason = "other processors always have `Four`")
+)]
+pub(crate) enum Width {
+    /// A single number.
+    One,
+    /// [`Four`].
+    Four,
+    /// [`Eight`].
+    Eight,
 }
 
-/// Runs straight-line code over the widest vectors of this machine. The bits are the same.
+/// The widest vectors of this machine.
 #[inline]
-pub(crate) fn in_vectors<S: Straight>(code: S) {
+pub(crate) fn width() -> Width {
+    #[cfg(not(target_arch = "x86_64"))]
+    return Width::Four;
     #[cfg(target_arch = "x86_64")]
-    {
-        if has_avx512() {
-            #[allow(unsafe_code, reason = "the instruction set is there: it has just been asked for")]
-            // SAFETY: this machine has both parts of AVX-512, and the function asks for nothing else.
-            return unsafe { with_avx512(Over::<x86::Eight, S>::new(code)) };
-        }
-        if has_avx2() {
-            #[allow(unsafe_code, reason = "the instruction set is there: it has just been asked for")]
-            // SAFETY: this machine has AVX2, and the function asks for nothing else.
-            return unsafe { with_avx2(Over::<x86::Four, S>::new(code)) };
-        }
-    }
-    Over::<number::Pair, S>::new(code).run();
-}
-
-/// Straight-line code over numbers of one width.
-struct Over<V, S> {
-    code: S,
-    width: PhantomData<V>,
-}
-
-impl<V: Number, S: Straight> Over<V, S> {
-    fn new(code: S) -> Self {
-        let width = PhantomData;
-        Over { code, width }
-    }
-}
-
-impl<V: Number, S: Straight> Loops for Over<V, S> {
-    type Result = ();
-
-    #[inline(always)]
-    fn run(self) {
-        self.code.run::<V>();
+    if has_avx512() {
+        Width::Eight
+    } else if has_avx2() {
+        Width::Four
+    } else {
+        Width::One
     }
 }
 
@@ -113,63 +104,4 @@ fn with_avx2<L: Loops>(loops: L) -> L::Result {
 #[target_feature(enable = "avx512f,avx512dq")]
 fn with_avx512<L: Loops>(loops: L) -> L::Result {
     loops.run()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::number::Pair;
-    use super::*;
-
-    const VALUES: [f64; 8] = [1.5, -0.25, 0.0, -0.0, f64::NAN, 1e300, -7.0, f64::INFINITY];
-
-    /// All operations of a vector on two of eight values each, by pairs, fours or eights.
-    struct Operations<'a>(&'a mut [[f64; 8]]);
-
-    impl Straight for Operations<'_> {
-        #[inline(always)]
-        fn run<V: Number>(self) {
-            let mut turned = VALUES;
-            turned.rotate_left(3);
-            for first in (0..8).step_by(V::LANES) {
-                let (a, b) = (V::load(&VALUES[first..]), V::load(&turned[first..]));
-                let found = [
-                    -a,
-                    a + b,
-                    a - b,
-                    a * b,
-                    a / b,
-                    a.abs(),
-                    a.sqrt(),
-                    V::min(a, b),
-                    V::max(a, b),
-                    V::choose(a, b, V::of(3.0)),
-                    a.sign(),
-                    a.tanh(),
-                    V::powf(a, b),
-                ];
-                let rows = self.0.iter_mut().zip(found);
-                rows.for_each(|(row, found)| found.store(&mut row[first..]));
-            }
-        }
-    }
-
-    #[test]
-    fn a_vector_of_any_width_has_the_bits_of_its_numbers() {
-        let rows = || [[9.0; 8]; 13];
-        let of = |run: fn(Operations)| {
-            let mut found = rows();
-            run(Operations(&mut found));
-            found.map(|row| row.map(|value| if value.is_nan() { None } else { Some(value.to_bits()) }))
-        };
-        let alone = of(|code| code.run::<f64>());
-        assert_eq!(of(|code| code.run::<Pair>()), alone);
-        assert_eq!(of(|code| in_vectors(code)), alone);
-        #[cfg(target_arch = "x86_64")]
-        if has_avx2() {
-            #[allow(unsafe_code, reason = "the instruction set is there: it has just been asked for")]
-            // SAFETY: this machine has AVX2, and the function asks for nothing else.
-            let four = of(|code| unsafe { with_avx2(Over::<x86::Four, _>::new(code)) });
-            assert_eq!(four, alone);
-        }
-    }
 }

@@ -10,13 +10,20 @@ mod about;
 mod names;
 // The parameters as a type.
 mod parameters;
+// How Rust writes an operation.
+mod language;
 // A piece of a program as a Rust function.
 mod function;
+// Functions over vectors.
+mod vectors;
 // Sizes and functions over typed vectors.
 mod typed;
 // The implementation of the trait.
 mod seam;
 
+use function::Form;
+
+use crate::back::straight::Straight;
 use crate::program::schedule::Compiled;
 
 /// The name of the type that stands for a model: `AxleD` for `axle_d`.
@@ -28,14 +35,21 @@ pub fn type_name(model: &str) -> String {
 ///
 /// The same model gives the same bytes, wherever its file lies; `FINGERPRINT` in the text is a hash of the rest of it.
 pub fn module(compiled: &Compiled) -> String {
+    let straight = Straight::new(compiled);
+    let functions = straight.functions("a line");
+    let functions = functions
+        .iter()
+        .map(|own| function::function(&straight, own, Form::Numbers));
+    let (wide, types) = vectors::vectors(&straight, &compiled.about);
     let sections = [
         USES.to_string(),
         typed::sizes(&compiled.about),
         parameters::parameters(compiled),
         typed::functions(compiled),
-        seam::implementation(compiled) + &seam::responses(&compiled.about) + &seam::sets(&compiled.about),
+        seam::implementation(compiled) + &types,
         about::about(&compiled.about),
-        format!("{STRAIGHT}{}}}\n", indent(&function::functions(compiled).join("\n"))),
+        within(STRAIGHT, functions, "}"),
+        within(VECTORS, wide.iter().map(|own| indent(own)), "    }\n}"),
     ];
     let body = sections.join("\n");
     let fingerprint = format!(
@@ -56,21 +70,34 @@ pub fn module(compiled: &Compiled) -> String {
 
 const ALLOW: &str = "#[allow(clippy::all, unused, non_snake_case, reason = \"names and numbers are the model's, and not every model needs all\")]\n";
 
-const USES: &str = "use ::qcar_runtime::generated::{Entries, Jacobians, LinesMut, Number, Responds, Results, Rows, RowsMut, Sets, StateSpace};
-use ::qcar_runtime::generated::{contact, fixed, fixed_mut, no_response, respond, respond_sets, together};
+const USES: &str =
+    "use ::qcar_runtime::generated::{Eight, Four, Jacobians, LinesMut, OverLines, Responds, Sets, StateSpace};
+use ::qcar_runtime::generated::{fixed, fixed_mut, no_response, one, respond, respond_sets, together};
 use ::qcar_runtime::model as seam;
-use ::qcar_runtime::model::{Entry, Matrix, Model as _};
+use ::qcar_runtime::model::{Entry, Matrix};
 use ::qcar_runtime::nalgebra::SVector;
 use ::std::borrow::Cow::Borrowed;
 ";
 
-const STRAIGHT: &str = "/// The straight-line functions, over numbers or vectors of them: no branch, no allocation.
-///
-/// They are inlined into what knows the instructions for such vectors.
+const STRAIGHT: &str = "/// The straight-line functions, over arrays: no branch, no bounds check, no allocation.
 pub mod straight {
-    use super::{CONSTANTS, Entries, INPUTS, Number, PARAMETERS, Results, STATES, seam};
-
+    use super::{CONSTANTS, INPUTS, PARAMETERS, STATES, seam};
+    use ::qcar_runtime::generated::{sign, table};
 ";
+
+const VECTORS: &str =
+    "/// Those of several parameter sets, or lines of a response, over vectors of four and of eight numbers.
+mod vectors {
+    use super::*;
+
+    ::qcar_runtime::in_vectors! {
+";
+
+/// Functions between the beginning and the end of their module.
+fn within(head: &str, functions: impl Iterator<Item = String>, end: &str) -> String {
+    let functions: String = functions.map(|own| format!("\n{}", indent(&own))).collect();
+    format!("{head}{functions}{end}\n")
+}
 
 fn indent(text: &str) -> String {
     let margin = |line: &str| if line.is_empty() { "" } else { "    " };

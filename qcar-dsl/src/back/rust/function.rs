@@ -2,27 +2,116 @@
 
 use std::collections::BTreeSet;
 
-use crate::back::straight::{At, Function, Language, Local, Locals, Pieces, Straight, Written, computed, usual_name};
-use crate::expr;
+use crate::back::straight::{At, FREQUENCIES, Function, Language, Local, Locals, Pieces, Straight, Written, computed};
 use crate::program::Value;
-use crate::program::schedule::Compiled;
 
-use super::names::names;
+use super::language::{Numbers, Vectors};
+use super::names::{camel, names};
 
-/// All straight-line functions of a model.
-pub fn functions(compiled: &Compiled) -> Vec<String> {
-    let straight = Straight::new(compiled);
-    let functions = straight.functions("a line");
-    functions.iter().map(|own| function(&straight, own)).collect()
+/// What a function computes with.
+#[derive(Clone, Copy)]
+pub enum Form {
+    /// Single numbers.
+    Numbers,
+    /// Vectors of several parameter sets.
+    Sets,
+    /// Vectors of several lines of a response that has so many outputs.
+    Lines(usize),
+}
+
+impl Form {
+    /// The arguments of a function with their types; the results come last.
+    fn arguments(self, function: &Function) -> Vec<(&'static str, String)> {
+        let results = function.program.outputs.len();
+        match self {
+            Form::Numbers => {
+                let arguments = function.arguments.iter();
+                let arguments = arguments.map(|&name| (name, of_number(name).to_string()));
+                arguments.chain([("out", format!("&mut [f64; {results}]"))]).collect()
+            }
+            Form::Sets => vec![
+                ("sets", format!("&{}<'_>", sets(function))),
+                ("first", "usize".into()),
+                ("out", format!("&mut [seam::Lanes; {results}]")),
+            ],
+            Form::Lines(outputs) => vec![
+                ("constants", "&[seam::Lanes; CONSTANTS]".into()),
+                (FREQUENCIES, "&seam::Lanes".into()),
+                ("first", "usize".into()),
+                ("out", format!("&mut LinesMut<'_, V, {outputs}, {results}>")),
+            ],
+        }
+    }
+
+    /// How a variable is read.
+    fn read(self, local: &Local) -> String {
+        let (argument, at) = (local.argument, local.at);
+        let by_reference = if at == At::Whole { "" } else { "&" };
+        match self {
+            Form::Numbers => format!("{argument}{at}"),
+            Form::Sets => format!("V::load({by_reference}sets.{argument}{at}, first)"),
+            Form::Lines(_) => format!("V::load({by_reference}{argument}{at}, first)"),
+        }
+    }
+
+    /// How a result is stored.
+    fn store(self, place: usize, value: &str) -> String {
+        match self {
+            Form::Numbers => format!("out[{place}] = {value};"),
+            Form::Sets => format!("V::store({value}, &mut out[{place}], first);"),
+            Form::Lines(_) => format!("out.put({place}, {value});"),
+        }
+    }
+
+    /// The type of a value.
+    fn value(self) -> &'static str {
+        match self {
+            Form::Numbers => "f64",
+            Form::Sets | Form::Lines(_) => "V",
+        }
+    }
+
+    fn language(self) -> &'static dyn Language {
+        match self {
+            Form::Numbers => &Numbers,
+            Form::Sets | Form::Lines(_) => &Vectors,
+        }
+    }
+
+    fn doc(self, function: &Function) -> String {
+        let own = format!("[`super::super::straight::{}`]", function.name);
+        match self {
+            Form::Numbers => function.doc.clone(),
+            Form::Sets => format!("{own} of several parameter sets, each with its own state and input."),
+            Form::Lines(_) => format!("{own} at several lines, or of several parameter sets at one."),
+        }
+    }
+}
+
+/// The type of the arguments of a function over parameter sets.
+pub fn sets(function: &Function) -> String {
+    camel(&format!("{}_sets", function.name))
+}
+
+/// What an argument is of a function over numbers.
+fn of_number(argument: &str) -> &'static str {
+    match argument {
+        "p" => "&[f64; PARAMETERS]",
+        "constants" => "&[f64; CONSTANTS]",
+        "x" => "&[f64; STATES]",
+        "u" => "&[f64; INPUTS]",
+        "contact" => "&seam::Contact",
+        _ => "f64",
+    }
 }
 
 /// The Rust text of a program: one function, or one that calls several in turn.
-fn function(straight: &Straight, function: &Function) -> String {
+pub fn function(straight: &Straight, function: &Function, form: Form) -> String {
     let cut = Pieces::cut(function.program);
-    let pieces = (0..cut.pieces.len()).map(|piece| Printer::new(straight, function, &cut, piece).function());
+    let pieces = (0..cut.pieces.len()).map(|piece| Printer::new(straight, function, form, &cut, piece).function());
     match cut.pieces.len() {
         1 => pieces.collect(),
-        _ => [caller(function, &cut)]
+        _ => [caller(function, form, &cut)]
             .into_iter()
             .chain(pieces)
             .collect::<Vec<_>>()
@@ -31,32 +120,21 @@ fn function(straight: &Straight, function: &Function) -> String {
 }
 
 /// The function that hands its arguments to the pieces.
-fn caller(function: &Function, cut: &Pieces) -> String {
-    let arguments = function.arguments.iter();
-    let arguments = arguments.map(|name| format!("{name}: {}", kind(name))).collect();
-    let mut text = doc(&function.doc, computed(cut.program).count());
-    text += &heading(&function.name, arguments, cut.program.outputs.len());
-    text += &format!("    let mut kept = [V::of(0.0); {}];\n", cut.kept.len());
+fn caller(function: &Function, form: Form, cut: &Pieces) -> String {
+    let arguments = form.arguments(function);
+    let (names, typed): (Vec<&str>, Vec<String>) = arguments
+        .iter()
+        .map(|(name, kind)| (*name, format!("{name}: {kind}")))
+        .unzip();
+    let mut text = doc(&form.doc(function), computed(cut.program).count());
+    text += inline(form, &function.name);
+    text += &heading(&function.name, typed);
+    let zero = form.language().number(0.0);
+    text += &format!("    let mut kept = [{zero}; {}];\n", cut.kept.len());
     for piece in 1..=cut.pieces.len() {
-        text += &format!(
-            "    V::apart(#[inline(always)] || {}_{piece}({}, &mut kept, out));\n",
-            function.name,
-            function.arguments.join(", ")
-        );
+        text += &format!("    {}_{piece}({}, &mut kept);\n", function.name, names.join(", "));
     }
     text + "}\n"
-}
-
-/// What an argument is: entries for each lane, or a number of each.
-fn kind(argument: &str) -> &'static str {
-    match argument {
-        "p" => "&impl Entries<V, PARAMETERS>",
-        "constants" => "&impl Entries<V, CONSTANTS>",
-        "x" => "&impl Entries<V, STATES>",
-        "u" => "&impl Entries<V, INPUTS>",
-        "contact" => "&seam::Contact<V>",
-        _ => "V",
-    }
 }
 
 fn doc(text: &str, count: usize) -> String {
@@ -68,30 +146,44 @@ fn doc(text: &str, count: usize) -> String {
         .collect()
 }
 
-fn heading(name: &str, mut arguments: Vec<String>, results: usize) -> String {
-    arguments.push(format!("out: &mut impl Results<V, {results}>"));
-    format!(
-        "#[inline(always)]\npub fn {name}<V: Number>({}) {{\n",
-        arguments.join(", ")
-    )
+/// What runs thousands of times in a ride is inlined into what asks for it. A piece, which has no name of its own, stays apart, since
+/// inlined again they would be as long as the whole. Over vectors, all stay apart.
+fn inline(form: Form, name: &str) -> &'static str {
+    match (form, name) {
+        (Form::Numbers, "rolling_derivative") => "#[inline]\n",
+        (Form::Numbers, "") => "#[inline(never)]\n",
+        _ => "",
+    }
+}
+
+fn heading(name: &str, arguments: Vec<String>) -> String {
+    format!("pub fn {name}({}) {{\n", arguments.join(", "))
 }
 
 /// Prints one piece of a program, which may be all of it.
 struct Printer<'a> {
     straight: &'a Straight<'a>,
     function: &'a Function<'a>,
+    form: Form,
     cut: &'a Pieces<'a>,
     piece: usize,
     locals: Locals,
 }
 
 impl<'a> Printer<'a> {
-    fn new(straight: &'a Straight<'a>, function: &'a Function<'a>, cut: &'a Pieces<'a>, piece: usize) -> Self {
+    fn new(
+        straight: &'a Straight<'a>,
+        function: &'a Function<'a>,
+        form: Form,
+        cut: &'a Pieces<'a>,
+        piece: usize,
+    ) -> Self {
         let free = names(function.arguments);
         let leaf = |leaf| straight.local(leaf, function.arguments);
         Printer {
             straight,
             function,
+            form,
             cut,
             piece,
             locals: Locals::new(function, cut, piece, free, &leaf),
@@ -101,25 +193,26 @@ impl<'a> Printer<'a> {
     fn function(&self) -> String {
         let name = &self.function.name;
         let count = self.cut.pieces[self.piece].len();
-        let results = self.cut.program.outputs.len();
         if self.cut.pieces.len() == 1 {
-            return doc(&self.function.doc, count) + &heading(name, self.arguments(), results) + &self.body();
+            let doc = doc(&self.form.doc(self.function), count) + inline(self.form, name);
+            return doc + &heading(name, self.arguments()) + &self.body();
         }
         let number = self.piece + 1;
-        let kept = format!("kept: &mut [V; {}]", self.cut.kept.len());
+        let kept = format!("kept: &mut [{}; {}]", self.form.value(), self.cut.kept.len());
         let arguments = self.arguments().into_iter().chain([kept]).collect();
         doc(&format!("Piece {number} of [`{name}`]."), count)
-            + &heading(&format!("{name}_{number}"), arguments, results)
+            + inline(self.form, "")
+            + &heading(&format!("{name}_{number}"), arguments)
             + &self.body()
     }
 
-    /// The arguments; those that the piece does not read have an underscore in front.
+    /// The arguments; numbers that the piece does not read have an underscore in front.
     fn arguments(&self) -> Vec<String> {
         let read: BTreeSet<&str> = self.leaves().into_iter().map(|(local, _)| local.argument).collect();
-        let underscore = |name: &str| if read.contains(name) { "" } else { "_" };
-        let arguments = self.function.arguments.iter();
+        let unread = |name: &&str| self.function.arguments.contains(name) && !read.contains(*name);
+        let arguments = self.form.arguments(self.function).into_iter();
         arguments
-            .map(|name| format!("{}{name}: {}", underscore(name), kind(name)))
+            .map(|(name, kind)| format!("{}{name}: {kind}", if unread(&name) { "_" } else { "" }))
             .collect()
     }
 
@@ -130,13 +223,8 @@ impl<'a> Printer<'a> {
     }
 
     fn body(&self) -> String {
-        let leaves = self.leaves().into_iter().map(|(local, value)| {
-            let at = match local.at {
-                At::Entry(entry) => format!(".at({entry})"),
-                At::Whole | At::Member(_) => local.at.to_string(),
-            };
-            format!("let {} = {}{at};", self.local(value), local.argument)
-        });
+        let leaves = self.leaves().into_iter();
+        let leaves = leaves.map(|(local, value)| format!("let {} = {};", self.local(value), self.form.read(&local)));
         let kept = self.cut.inherited(self.piece).into_iter();
         let kept = kept.map(|value| format!("let {} = kept[{}];", self.local(value), self.cut.kept[&value]));
         let stored = self.cut.stored(self.piece).into_iter();
@@ -148,11 +236,8 @@ impl<'a> Printer<'a> {
 
     /// The statement that computes a value, and those that put it where it is wanted.
     fn compute(&self, value: Value) -> Vec<String> {
-        let mut statements = vec![format!(
-            "let {} = {};",
-            self.local(value),
-            self.written().operation(value)
-        )];
+        let operation = self.written().operation(value);
+        let mut statements = vec![format!("let {} = {operation};", self.local(value))];
         if let Some(place) = self.cut.kept.get(&value) {
             statements.push(format!("kept[{place}] = {};", self.local(value)));
         }
@@ -162,13 +247,11 @@ impl<'a> Printer<'a> {
     }
 
     fn store(&self, place: usize, value: Value) -> String {
-        let comment = self.function.results.get(place);
-        let comment = comment.map(|result| format!(" // {result}"));
-        format!(
-            "out.put({place}, {});{}",
-            self.written().operand(value),
-            comment.unwrap_or_default()
-        )
+        let stored = self.form.store(place, &self.written().operand(value));
+        match self.function.results.get(place) {
+            Some(result) => format!("{stored} // {result}"),
+            None => stored,
+        }
     }
 
     fn local(&self, value: Value) -> &str {
@@ -177,70 +260,12 @@ impl<'a> Printer<'a> {
 
     fn written(&self) -> Written<'_> {
         Written {
-            language: &Rust,
+            language: self.form.language(),
             program: self.cut.program,
             locals: &self.locals,
         }
     }
 }
-
-/// How Rust writes.
-struct Rust;
-
-impl Language for Rust {
-    fn number(&self, number: f64) -> String {
-        format!("V::of({})", self.knot(number))
-    }
-
-    fn call(&self, function: expr::Function, a: &str) -> String {
-        let name = match function {
-            expr::Function::Ln => "ln",
-            other => usual_name(other),
-        };
-        format!("V::{name}({a})")
-    }
-
-    fn power(&self, a: &str, b: &str) -> String {
-        format!("V::powf({a}, {b})")
-    }
-
-    fn smaller(&self, a: &str, b: &str) -> String {
-        format!("V::min({a}, {b})")
-    }
-
-    fn larger(&self, a: &str, b: &str) -> String {
-        format!("V::max({a}, {b})")
-    }
-
-    fn choice(&self, test: &str, a: &str, b: &str) -> String {
-        format!("V::choose({test}, {a}, {b})")
-    }
-
-    /// The same in every lane.
-    fn knot(&self, knot: f64) -> String {
-        match knot {
-            _ if knot.is_nan() => "f64::NAN".into(),
-            _ if knot == f64::INFINITY => "f64::INFINITY".into(),
-            _ if knot == f64::NEG_INFINITY => "f64::NEG_INFINITY".into(),
-            _ => format!("{knot:?}"),
-        }
-    }
-
-    /// Each row from a line of its own on.
-    fn table(&self, order: u8, x: &str, rows: [Vec<String>; 3]) -> String {
-        let row = |entries: Vec<String>| {
-            let lines: Vec<String> = entries.chunks(ENTRIES).map(|line| line.join(", ")).collect();
-            format!("    &[{}]", lines.join(",\n      "))
-        };
-        format!("{TABLE}({order}, {x},\n{})", rows.map(row).join(",\n"))
-    }
-}
-
-/// How many points of a table stand on a line.
-const ENTRIES: usize = 8;
-
-/// What interpolates at run time.
-const TABLE: &str = "::qcar_runtime::generated::table";
 
 fn indent(statements: impl Iterator<Item = String>) -> String {
     let indented = |statement: String| -> String { statement.lines().flat_map(|line| ["    ", line, "\n"]).collect() };

@@ -3,7 +3,21 @@
 use crate::back::straight::Names;
 
 /// What a function refers to beside its own variables.
-const RESERVED: &[&str] = &["CONSTANTS", "INPUTS", "PARAMETERS", "STATES", "kept", "out", "seam"];
+const RESERVED: &[&str] = &[
+    "CONSTANTS",
+    "INPUTS",
+    "PARAMETERS",
+    "STATES",
+    "V",
+    "f64",
+    "first",
+    "kept",
+    "out",
+    "seam",
+    "sets",
+    "sign",
+    "table",
+];
 
 /// The names of local variables beside these arguments.
 pub fn names(arguments: &[&'static str]) -> Names {

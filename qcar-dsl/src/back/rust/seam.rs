@@ -60,7 +60,7 @@ fn response(about: &About) -> String {
     let arm = |driver: &str, place: usize, suffix: &str| {
         let code = camel(&response_name(about, place, suffix));
         format!(
-            "            ({place}, {}) => {driver}::<{code}, _, _>(constants, omega, into),\n",
+            "            ({place}, {}) => {driver}::<{code}, _, _, _>(constants, omega, into),\n",
             !suffix.is_empty()
         )
     };
@@ -89,101 +89,22 @@ fn response(about: &About) -> String {
     )
 }
 
-/// The straight-line functions of the responses as types, which the runtime compiles once for each width of vectors.
-pub fn responses(about: &About) -> String {
-    let code = |place: usize, suffix: &str| {
-        let function = response_name(about, place, suffix);
-        format!(
-            "
-struct {name};
-
-impl Responds<CONSTANTS, {outputs}> for {name} {{
-    #[inline(always)]
-    fn compute<V: Number>(constants: &Rows<'_, CONSTANTS>, omega: V, out: &mut LinesMut<'_, {outputs}>) {{
-        straight::{function}::<V>(constants, omega, out);
-    }}
-}}
-",
-            name = camel(&function),
-            outputs = about.responses[place].outputs.len(),
-        )
-    };
-    (0..about.responses.len())
-        .flat_map(|place| [code(place, ""), code(place, "_jacobian")])
-        .collect()
-}
-
-const PARAMETERS: &str = "[seam::Lanes; PARAMETERS]";
-const CONSTANTS: &str = "[seam::Lanes; CONSTANTS]";
-const STATES: &str = "[seam::Lanes; STATES]";
-const INPUTS: &str = "[seam::Lanes; INPUTS]";
-const LANES: &str = "seam::Lanes";
-const CONTACTS: &str = "seam::Contacts";
-
-/// The functions of several parameter sets, of which the runtime compiles each once for each width of vectors.
-pub fn sets(about: &About) -> String {
-    let of_model: [(&str, &[&str], usize); 4] = [
-        ("prepare", &[PARAMETERS], about.constants),
-        ("derivative", &[CONSTANTS, STATES, INPUTS], about.states.len()),
-        ("matrices", &[PARAMETERS, STATES, INPUTS], about.matrices.len()),
-        (
-            "sensitivities",
-            &[PARAMETERS, STATES, INPUTS],
-            about.sensitivities.len(),
-        ),
-    ];
-    let of_contact: [(&str, &[&str], usize); 2] = [
-        ("contact_force", &[CONSTANTS, STATES, LANES, LANES], 1),
-        (
-            "rolling_derivative",
-            &[CONSTANTS, STATES, INPUTS, CONTACTS],
-            about.states.len(),
-        ),
-    ];
-    let rolls = about.contact.is_some();
-    let functions = of_model.iter().chain(of_contact.iter().filter(|_| rolls));
-    let written = functions.map(|(function, types, rows)| {
-        let fields: Vec<String> = types.iter().map(|own| format!("&'a {own}")).collect();
-        let arguments = types.iter().enumerate().map(|(place, own)| match *own {
-            LANES => format!("V::load(&self.{place}[first..])"),
-            CONTACTS => format!("&contact(self.{place}, first)"),
-            _ => format!("&Rows::new(self.{place}, first)"),
-        });
-        let arguments: Vec<String> = arguments.collect();
-        format!(
-            "
-struct {name}<'a>({fields});
-
-impl Sets<{rows}> for {name}<'_> {{
-    #[inline(always)]
-    fn compute<V: Number>(&self, first: usize, out: &mut RowsMut<'_, {rows}>) {{
-        straight::{function}::<V>({arguments}, out);
-    }}
-}}
-",
-            name = camel(&format!("{function}_sets")),
-            fields = fields.join(", "),
-            arguments = arguments.join(", "),
-        )
-    });
-    written.collect()
-}
-
 const SETS: &str = "
     fn prepare_sets(&self, p: &[seam::Lanes], constants: &mut [seam::Lanes]) {
-        together(&PrepareSets(fixed(p)), constants);
+        together(&PrepareSets { p: fixed(p) }, constants);
     }
 
     fn derivative_sets(&self, constants: &[seam::Lanes], x: &[seam::Lanes], u: &[seam::Lanes], dx: &mut [seam::Lanes]) {
-        together(&DerivativeSets(fixed(constants), fixed(x), fixed(u)), dx);
+        let sets = DerivativeSets { constants: fixed(constants), x: fixed(x), u: fixed(u) };
+        together(&sets, dx);
     }
 
     fn matrices_sets(&self, p: &[seam::Lanes], x: &[seam::Lanes], u: &[seam::Lanes], nonzeros: &mut [seam::Lanes]) {
-        together(&MatricesSets(fixed(p), fixed(x), fixed(u)), nonzeros);
+        together(&MatricesSets { p: fixed(p), x: fixed(x), u: fixed(u) }, nonzeros);
     }
 
     fn sensitivities_sets(&self, p: &[seam::Lanes], x: &[seam::Lanes], u: &[seam::Lanes], nonzeros: &mut [seam::Lanes]) {
-        together(&SensitivitiesSets(fixed(p), fixed(x), fixed(u)), nonzeros);
+        together(&SensitivitiesSets { p: fixed(p), x: fixed(x), u: fixed(u) }, nonzeros);
     }
 ";
 
@@ -206,7 +127,8 @@ const ROLLING: &str = "
 
     fn contact_force_sets(&self, constants: &[seam::Lanes], x: &[seam::Lanes], s: &seam::Lanes, v: &seam::Lanes) -> seam::Lanes {
         let mut force = [seam::Lanes::default()];
-        together(&ContactForceSets(fixed(constants), fixed(x), s, v), &mut force);
+        let sets = ContactForceSets { constants: fixed(constants), x: fixed(x), s, v };
+        together(&sets, &mut force);
         force[0]
     }
 
@@ -218,6 +140,7 @@ const ROLLING: &str = "
         contacts: &seam::Contacts,
         dx: &mut [seam::Lanes],
     ) {
-        together(&RollingDerivativeSets(fixed(constants), fixed(x), fixed(u), contacts), dx);
+        let sets = RollingDerivativeSets { constants: fixed(constants), x: fixed(x), u: fixed(u), contact: contacts };
+        together(&sets, dx);
     }
 ";

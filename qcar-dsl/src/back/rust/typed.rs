@@ -4,8 +4,6 @@ use qcar_model::{About, Matrix};
 
 use crate::program::schedule::Compiled;
 
-use super::names::camel;
-
 /// Sizes, and the places of states, inputs and outputs.
 pub fn sizes(about: &About) -> String {
     let size = |name: &str, what: &str, size: usize| {
@@ -53,7 +51,7 @@ impl Prepared {{
     /// Makes a parameter set ready.
     pub fn new(p: &Parameters) -> Prepared {{
         let mut constants = [0.0; CONSTANTS];
-        {model}.prepare(&p.to_array(), &mut constants);
+        straight::prepare(&p.to_array(), &mut constants);
         Prepared(constants)
     }}
 }}
@@ -65,7 +63,7 @@ pub fn derivative(
     u: &SVector<f64, INPUTS>,
 ) -> SVector<f64, STATES> {{
     let mut dx = SVector::zeros();
-    {model}.derivative(&prepared.0, &x.data.0[0], &u.data.0[0], &mut dx.data.0[0]);
+    straight::derivative(&prepared.0, &x.data.0[0], &u.data.0[0], &mut dx.data.0[0]);
     dx
 }}
 
@@ -76,14 +74,14 @@ pub fn outputs(
     u: &SVector<f64, INPUTS>,
 ) -> SVector<f64, OUTPUTS> {{
     let mut y = SVector::zeros();
-    {model}.outputs(&prepared.0, &x.data.0[0], &u.data.0[0], &mut y.data.0[0]);
+    straight::outputs(&prepared.0, &x.data.0[0], &u.data.0[0], &mut y.data.0[0]);
     y
 }}
 
 /// A = ∂f/∂x, B = ∂f/∂u, C = ∂h/∂x and D = ∂h/∂u{at}.
 pub fn state_space(p: &Parameters{point}) -> StateSpace<STATES, INPUTS, OUTPUTS> {{
     let mut nonzeros = [0.0; {matrices}];
-    {model}.matrices(&p.to_array(), {zero}, &mut nonzeros);
+    straight::matrices(&p.to_array(), {zero}, &mut nonzeros);
     let mut system = StateSpace::zeros();
 {scatter}    system
 }}
@@ -91,7 +89,7 @@ pub fn state_space(p: &Parameters{point}) -> StateSpace<STATES, INPUTS, OUTPUTS>
 /// The nonzeros of the parameter Jacobians of A, B, C and D{at}, in the order of [`SENSITIVITIES`].
 pub fn sensitivities(p: &Parameters{point}) -> [f64; {sensitivities}] {{
     let mut nonzeros = [0.0; {sensitivities}];
-    {model}.sensitivities(&p.to_array(), {zero}, &mut nonzeros);
+    straight::sensitivities(&p.to_array(), {zero}, &mut nonzeros);
     nonzeros
 }}
 
@@ -100,7 +98,6 @@ pub fn jacobians(p: &Parameters{point}) -> Jacobians<STATES, INPUTS, OUTPUTS> {{
     Jacobians::new(&Parameters::NAMES, &SENSITIVITIES, &sensitivities({given}))
 }}
 ",
-        model = camel(&about.name),
         given = if about.linear { "p" } else { "p, x, u" },
         matrices = about.matrices.len(),
         scatter = scatter(about),

@@ -10,6 +10,20 @@ use crate::program::{Op, Program, Value};
 pub trait Language {
     /// A number, to every digit.
     fn number(&self, number: f64) -> String;
+    /// A value with the other sign.
+    fn negative(&self, a: &str) -> String {
+        format!("-{a}")
+    }
+    /// Two values with an operator between them.
+    fn operator(&self, a: &str, operator: Operator, b: &str) -> String {
+        let sign = match operator {
+            Operator::Add => '+',
+            Operator::Sub => '-',
+            Operator::Mul => '*',
+            Operator::Div => '/',
+        };
+        format!("{a} {sign} {b}")
+    }
     /// A function of a value.
     fn call(&self, function: Function, a: &str) -> String {
         format!("{}({a})", usual_name(function))
@@ -34,6 +48,19 @@ pub trait Language {
     }
     /// The derivative of an order of a curve, from abscissae, ordinates and slopes.
     fn table(&self, order: u8, x: &str, rows: [Vec<String>; 3]) -> String;
+}
+
+/// What stands between two values.
+#[derive(Clone, Copy)]
+pub enum Operator {
+    /// Plus.
+    Add,
+    /// Minus.
+    Sub,
+    /// Times.
+    Mul,
+    /// Divided by.
+    Div,
 }
 
 /// What most languages call a function.
@@ -74,13 +101,14 @@ impl Written<'_> {
     /// What computes a value.
     pub fn operation(&self, value: Value) -> String {
         let at = |v: Value| self.operand(v);
+        let operator = |a, operator, b| self.language.operator(&at(a), operator, &at(b));
         match self.program.ops[value.0 as usize] {
             Op::Constant(_) | Op::Input(_) | Op::Prepared(_) => at(value).into_owned(),
-            Op::Neg(a) => format!("-{}", at(a)),
-            Op::Add(a, b) => format!("{} + {}", at(a), at(b)),
-            Op::Sub(a, b) => format!("{} - {}", at(a), at(b)),
-            Op::Mul(a, b) => format!("{} * {}", at(a), at(b)),
-            Op::Div(a, b) => format!("{} / {}", at(a), at(b)),
+            Op::Neg(a) => self.language.negative(&at(a)),
+            Op::Add(a, b) => operator(a, Operator::Add, b),
+            Op::Sub(a, b) => operator(a, Operator::Sub, b),
+            Op::Mul(a, b) => operator(a, Operator::Mul, b),
+            Op::Div(a, b) => operator(a, Operator::Div, b),
             Op::Pow(a, b) => self.language.power(&at(a), &at(b)),
             Op::Min(a, b) => self.language.smaller(&at(a), &at(b)),
             Op::Max(a, b) => self.language.larger(&at(a), &at(b)),
