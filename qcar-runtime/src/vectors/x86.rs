@@ -6,6 +6,7 @@
 
 use std::arch::x86_64::*;
 use std::array;
+use std::ptr;
 
 use super::lines::{LinesMut, place_of_line};
 use super::number;
@@ -40,7 +41,13 @@ macro_rules! vector {
             #[inline]
             pub fn load(row: &Lanes, set: usize) -> Self {
                 // SAFETY: what remains of the place is a multiple of the width, and less than the length of the row.
-                $vector(unsafe { $load(row.as_ptr().add(set & (LANES - $lanes))) })
+                $vector(unsafe {
+                    $load(
+                        ptr::from_ref(row)
+                            .cast::<f64>()
+                            .wrapping_add(set & (LANES - $lanes)),
+                    )
+                })
             }
 
             /// Puts it where the values of the sets from `set` on are.
@@ -48,7 +55,14 @@ macro_rules! vector {
             #[inline]
             pub fn store(self, row: &mut Lanes, set: usize) {
                 // SAFETY: as in `load`.
-                unsafe { $store(row.as_mut_ptr().add(set & (LANES - $lanes)), self.0) }
+                unsafe {
+                    $store(
+                        ptr::from_mut(row)
+                            .cast::<f64>()
+                            .wrapping_add(set & (LANES - $lanes)),
+                        self.0,
+                    )
+                }
             }
 
             #[target_feature(enable = $instructions)]
@@ -137,17 +151,6 @@ macro_rules! vector {
                 }))
             }
         }
-
-        impl<const N: usize, const R: usize> LinesMut<'_, $vector, N, R> {
-            /// Puts a result at its place.
-            #[target_feature(enable = $instructions)]
-            #[inline]
-            pub fn put(&mut self, place: usize, value: $vector) {
-                let (part, row) = place_of_line!(place, N, R);
-                // SAFETY: `LinesMut::new` has seen that each part has all rows, and that each row has these lines.
-                unsafe { $store(self.parts[part].add(row * self.lines), value.0) }
-            }
-        }
     };
 }
 
@@ -178,7 +181,7 @@ impl Four {
     #[target_feature(enable = "avx")]
     #[inline]
     pub fn neg(self) -> Self {
-        Four(_mm256_xor_pd(self.0, _mm256_set1_pd(-0.0)))
+        Four(_mm256_sub_pd(_mm256_set1_pd(-0.0), self.0))
     }
 
     /// The magnitude.
@@ -213,6 +216,17 @@ impl Four {
     }
 }
 
+impl<const N: usize, const R: usize> LinesMut<'_, N, R> {
+    /// Puts a result at its place.
+    #[target_feature(enable = "avx")]
+    #[inline]
+    pub fn put(&mut self, place: usize, value: Four) {
+        let (part, row) = place_of_line!(place, N, R);
+        // SAFETY: `LinesMut::new` has seen that each part has all rows, and that each row has four lines from there on.
+        unsafe { _mm256_storeu_pd(self.parts[part].wrapping_add(row * self.lines), value.0) }
+    }
+}
+
 /// Eight numbers.
 #[derive(Clone, Copy)]
 pub struct Eight(__m512d);
@@ -239,8 +253,7 @@ impl Eight {
     #[target_feature(enable = "avx512f")]
     #[inline]
     pub fn neg(self) -> Self {
-        let sign = _mm512_set1_epi64(i64::MIN);
-        Eight(_mm512_castsi512_pd(_mm512_xor_si512(_mm512_castpd_si512(self.0), sign)))
+        Eight(_mm512_sub_pd(_mm512_set1_pd(-0.0), self.0))
     }
 
     /// The magnitude.

@@ -17,42 +17,45 @@ const SETS: [&str; 6] = [
     "rolling_derivative",
 ];
 
-/// The functions, and the types by which the runtime calls them.
-pub fn vectors(straight: &Straight, about: &About) -> (Vec<String>, String) {
-    let functions = straight.functions("a line");
-    let forms = functions.iter().filter_map(|own| Some((own, form(about, own)?)));
-    let written = forms.map(|(own, form)| {
-        let implementation = match form {
-            Form::Lines(outputs) => of_lines(own, outputs),
-            Form::Numbers | Form::Sets => of_sets(own),
-        };
-        (function(straight, own, form), implementation)
-    });
-    written.unzip()
+/// Functions over vectors, and the types by which the runtime calls them.
+pub type Vectors = (Vec<String>, String);
+
+/// Those of several parameter sets.
+pub fn of_sets(straight: &Straight, functions: &[Function]) -> Vectors {
+    let functions = functions.iter().filter(|own| SETS.contains(&own.name.as_str()));
+    functions
+        .map(|own| (function(straight, own, Form::Sets), called_for_sets(own)))
+        .unzip()
 }
 
-/// The vectors over which a function is there, too.
-fn form(about: &About, function: &Function) -> Option<Form> {
-    if SETS.contains(&function.name.as_str()) {
-        return Some(Form::Sets);
-    }
+/// Those of lines of a response.
+pub fn of_lines(straight: &Straight, functions: &[Function], about: &About) -> Vectors {
+    let lines = functions.iter().filter_map(|own| {
+        let outputs = outputs(about, own)?;
+        let written = function(straight, own, Form::Lines(outputs));
+        Some((written, called_for_lines(own, outputs)))
+    });
+    lines.unzip()
+}
+
+/// How many outputs a response has.
+fn outputs(about: &About, function: &Function) -> Option<usize> {
     let mut responses = about.responses.iter().enumerate();
     let (_, layout) = responses.find(|(place, _)| {
         let is = |suffix| response_name(about, *place, suffix) == function.name;
         is("") || is("_jacobian")
     })?;
-    Some(Form::Lines(layout.outputs.len()))
+    Some(layout.outputs.len())
 }
 
-fn of_lines(function: &Function, outputs: usize) -> String {
+fn called_for_lines(function: &Function, outputs: usize) -> String {
     let (name, results) = (&function.name, function.program.outputs.len());
     format!(
         "
 struct {type_name};
 
 impl Responds<CONSTANTS, {outputs}, {results}> for {type_name} {{
-    const FOUR: OverLines<Four, CONSTANTS, {outputs}, {results}> = vectors::four::{name};
-    const EIGHT: OverLines<Eight, CONSTANTS, {outputs}, {results}> = vectors::eight::{name};
+    const FOUR: unsafe fn(&[seam::Lanes; CONSTANTS], &seam::Lanes, usize, &mut LinesMut<'_, {outputs}, {results}>) = lines::{name};
 
     fn one(constants: &[f64; CONSTANTS], omega: f64, out: &mut [f64; {results}]) {{
         straight::{name}(constants, omega, out);
@@ -63,7 +66,7 @@ impl Responds<CONSTANTS, {outputs}, {results}> for {type_name} {{
     )
 }
 
-fn of_sets(function: &Function) -> String {
+fn called_for_sets(function: &Function) -> String {
     let (name, results) = (&function.name, function.program.outputs.len());
     let arguments = function.arguments.iter();
     let fields: String = arguments
@@ -77,8 +80,8 @@ struct {type_name}<'a> {{
 {fields}}}
 
 impl Sets<{results}> for {type_name}<'_> {{
-    const FOUR: unsafe fn(&Self, usize, &mut [seam::Lanes; {results}]) = vectors::four::{name};
-    const EIGHT: unsafe fn(&Self, usize, &mut [seam::Lanes; {results}]) = vectors::eight::{name};
+    const FOUR: unsafe fn(&Self, usize, &mut [seam::Lanes; {results}]) = sets::four::{name};
+    const EIGHT: unsafe fn(&Self, usize, &mut [seam::Lanes; {results}]) = sets::eight::{name};
 
     fn one(&self, set: usize, out: &mut [f64; {results}]) {{
         straight::{name}({of_one}, out);
