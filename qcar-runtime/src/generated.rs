@@ -12,7 +12,7 @@ use nalgebra::SMatrix;
 
 use crate::model::{About, Entry, Matrix};
 pub use crate::vectors::{Eight, Four, LinesMut, sign, table};
-pub use in_vectors::{Responds, Sets, one, respond, respond_sets, together};
+pub use in_vectors::{OverLines, Responds, Sets, one, respond, respond_sets, together};
 
 /// The state-space form `dx = A x + B u`, `y = C x + D u` of a model with N states, M inputs and O outputs.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -40,18 +40,17 @@ pub fn module(compiled: &Compiled) -> String {
     let numbers = functions
         .iter()
         .map(|own| function::function(&straight, own, Form::Numbers));
-    let (sets, called_for_sets) = vectors::of_sets(&straight, &functions);
-    let (lines, called_for_lines) = vectors::of_lines(&straight, &functions, &compiled.about);
+    let vectors = vectors::vectors(&straight, &functions, &compiled.about);
     let sections = [
         USES.to_string(),
         typed::sizes(&compiled.about),
         parameters::parameters(compiled),
         typed::functions(compiled),
-        seam::implementation(compiled) + &called_for_lines + &called_for_sets,
+        seam::implementation(compiled) + &vectors.types,
         about::about(&compiled.about),
         within(STRAIGHT, numbers, "}"),
-        within(SETS, sets.iter().map(|own| indent(own)), "    }\n}"),
-        within(LINES, lines.iter().map(|own| indent(own)), "    }\n}"),
+        within(WIDE, vectors.wide.iter().map(|own| indent(own)), "    }\n}"),
+        within(FOURS, vectors.fours.iter().map(|own| indent(own)), "    }\n}"),
     ];
     let body = sections.join("\n");
     let fingerprint = format!(
@@ -72,7 +71,8 @@ pub fn module(compiled: &Compiled) -> String {
 
 const ALLOW: &str = "#[allow(clippy::all, unused, non_snake_case, reason = \"names and numbers are the model's, and not every model needs all\")]\n";
 
-const USES: &str = "use ::qcar_runtime::generated::{Jacobians, LinesMut, Responds, Sets, StateSpace};
+const USES: &str =
+    "use ::qcar_runtime::generated::{Eight, Four, Jacobians, LinesMut, OverLines, Responds, Sets, StateSpace};
 use ::qcar_runtime::generated::{fixed, fixed_mut, no_response, one, respond, respond_sets, together};
 use ::qcar_runtime::model as seam;
 use ::qcar_runtime::model::{Entry, Matrix};
@@ -86,15 +86,16 @@ pub mod straight {
     use ::qcar_runtime::generated::{sign, table};
 ";
 
-const SETS: &str = "/// Those of several parameter sets, over vectors of four and of eight numbers.
-mod sets {
+const WIDE: &str =
+    "/// Those of several parameter sets, or lines of a response, over vectors of four and of eight numbers.
+mod wide {
     use super::*;
 
     ::qcar_runtime::in_vectors! {
 ";
 
-const LINES: &str = "/// Those of lines of a response, over vectors of four numbers.
-mod lines {
+const FOURS: &str = "/// Those of lines of other responses, over vectors of four numbers.
+mod fours {
     use super::*;
 
     ::qcar_runtime::in_fours! {

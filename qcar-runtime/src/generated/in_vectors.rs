@@ -2,7 +2,7 @@
 
 use super::{fixed, fixed_mut};
 use crate::model::{LANES, Lanes, ResponseMut};
-use crate::vectors::{LinesMut, Width, width};
+use crate::vectors::{Eight, Four, LinesMut, Width, width};
 
 /// Straight-line functions over vectors of four numbers, as `pub fn name(arguments) { body }`. A vector is `V` to them.
 #[macro_export]
@@ -111,11 +111,19 @@ fn sets_in<S: Sets<R>, const R: usize>(width: Width, sets: &S, rows: &mut [Lanes
     }
 }
 
+/// The code of a response over a vector of lines: from constants and frequencies, rad/s, of which a vector holds those from a place on.
+pub type OverLines<V, const C: usize, const N: usize, const R: usize> =
+    unsafe fn(&[Lanes; C], &Lanes, usize, &mut LinesMut<'_, V, N, R>);
+
 /// The straight-line code of a frequency response with `N` outputs, over `C` constants, with `R` results.
+///
+/// Where the functions are unsafe to call, that is for want of instructions: they may ask for those of their vector and no other.
 pub trait Responds<const C: usize, const N: usize, const R: usize> {
-    /// The results of four lines, over [`Four`]: from constants and frequencies, rad/s, of which a vector holds those from a place on. That it is
-    /// unsafe to call is for want of instructions: it may ask for those of its vector and no other.
-    const FOUR: unsafe fn(&[Lanes; C], &Lanes, usize, &mut LinesMut<'_, N, R>);
+    /// The results of four lines.
+    const FOUR: OverLines<Four, C, N, R>;
+
+    /// The results of eight lines, which takes three quarters of the time of [`Self::FOUR`] twice, where it is worth compiling.
+    const EIGHT: Option<OverLines<Eight, C, N, R>>;
 
     /// The results at one frequency, rad/s.
     fn one(constants: &[f64; C], omega: f64, out: &mut [f64; R]);
@@ -184,19 +192,26 @@ impl Rows<'_> {
         omega: &Lanes,
         first: usize,
     ) {
-        match width {
-            // Vectors of eight would be a quarter faster, and take rustc a third longer.
-            Width::Four | Width::Eight => {
+        match (width, P::EIGHT) {
+            (Width::Eight, Some(code)) => {
+                let mut out = LinesMut::new(&mut self.parts, self.lines, first, LANES);
+                #[allow(unsafe_code, reason = "the instruction set is there: it has been asked for")]
+                // SAFETY: this machine has the instructions of the vector, and the function asks for no others.
+                unsafe {
+                    code(constants, omega, 0, &mut out);
+                }
+            }
+            (Width::Four | Width::Eight, _) => {
                 for lane in [0, 4] {
-                    let mut out = LinesMut::new(&mut self.parts, self.lines, first + lane);
+                    let mut out = LinesMut::new(&mut self.parts, self.lines, first + lane, 4);
                     #[allow(unsafe_code, reason = "the instruction set is there: it has been asked for")]
-                    // SAFETY: this machine has the instructions of the vector, and the function asks for no others.
+                    // SAFETY: as above; a machine with vectors of eight has those of four.
                     unsafe {
                         (P::FOUR)(constants, omega, lane, &mut out);
                     }
                 }
             }
-            Width::One => {
+            (Width::One, _) => {
                 for (lane, omega) in omega.iter().enumerate() {
                     self.compute_one::<P, C, N, R>(&one(constants, lane), *omega, first + lane);
                 }
@@ -271,14 +286,8 @@ mod tests {
                     V::store(found, row, first);
                 }
             }
-        }
-    }
 
-    mod lines {
-        use super::*;
-
-        crate::in_fours! {
-            pub fn response(constants: &[Lanes; 1], omega: &Lanes, first: usize, out: &mut LinesMut<'_, 2, 6>) {
+            pub fn response(constants: &[Lanes; 1], omega: &Lanes, first: usize, out: &mut LinesMut<'_, V, 2, 6>) {
                 let (a, omega) = (V::load(&constants[0], first), V::load(omega, first));
                 out.put(0, V::add(a, omega));
                 out.put(1, V::mul(a, omega));
@@ -322,7 +331,8 @@ mod tests {
     }
 
     impl Responds<1, 2, 6> for Response {
-        const FOUR: unsafe fn(&[Lanes; 1], &Lanes, usize, &mut LinesMut<'_, 2, 6>) = lines::response;
+        const FOUR: OverLines<Four, 1, 2, 6> = vectors::four::response;
+        const EIGHT: Option<OverLines<Eight, 1, 2, 6>> = Some(vectors::eight::response);
 
         fn one(&[a]: &[f64; 1], omega: f64, out: &mut [f64; 6]) {
             *out = [a + omega, a * omega, a - omega, a / omega, omega, 1.0 / omega];

@@ -2,25 +2,25 @@
 
 use std::marker::PhantomData;
 
-/// Four lines of a response with `N` outputs and `R` results: real parts, imaginary parts, and those of the Jacobian.
-pub struct LinesMut<'a, const N: usize, const R: usize> {
+/// The lines of a response with `N` outputs and `R` results that a vector `V` holds: real parts, imaginary parts, and those of the Jacobian.
+pub struct LinesMut<'a, V, const N: usize, const R: usize> {
     /// The first of these lines in the first row of each part.
     pub(super) parts: [*mut f64; 4],
     /// How many lines a row has.
     pub(super) lines: usize,
-    of: PhantomData<&'a mut [f64]>,
+    of: PhantomData<(&'a mut [f64], V)>,
 }
 
-impl<'a, const N: usize, const R: usize> LinesMut<'a, N, R> {
-    /// Those from the line `first` on.
+impl<'a, V, const N: usize, const R: usize> LinesMut<'a, V, N, R> {
+    /// Those from the line `first` on, where a vector holds so many lanes.
     ///
     /// # Panics
     ///
-    /// Where there are no four lines, or a part has no room for a row of each result.
+    /// Where there are not so many lines, or a part has no room for a row of each result.
     #[inline]
-    pub(crate) fn new(parts: &'a mut [&mut [f64]; 4], lines: usize, first: usize) -> Self {
+    pub(crate) fn new(parts: &'a mut [&mut [f64]; 4], lines: usize, first: usize, lanes: usize) -> Self {
         let slopes = R / 2 - N;
-        assert!(lines >= 4 && first <= lines - 4);
+        assert!(lines >= lanes && first <= lines - lanes);
         let rows = [N, N, slopes, slopes];
         assert!(parts.iter().zip(rows).all(|(part, rows)| part.len() >= rows * lines));
         LinesMut {

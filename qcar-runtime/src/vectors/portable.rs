@@ -99,12 +99,12 @@ impl Four {
     }
 }
 
-impl<const N: usize, const R: usize> LinesMut<'_, N, R> {
+impl<const N: usize, const R: usize> LinesMut<'_, Four, N, R> {
     /// Puts a result at its place.
     #[inline]
     pub fn put(&mut self, place: usize, value: Four) {
         let (part, row) = place_of_line!(place, N, R);
-        // SAFETY: `LinesMut::new` has seen that each part has all rows, and that each row has four lines from there on.
+        // SAFETY: `LinesMut::new` has seen that each part has all rows, and that each row has these lines.
         unsafe {
             self.parts[part]
                 .add(row * self.lines)
@@ -156,7 +156,7 @@ mod tests {
         let mut parts = [[9.0; 5], [9.0; 5], [0.0; 5], [0.0; 5]];
         let [re, im, d_re, d_im] = &mut parts;
         let mut slices = [&mut re[..], &mut im[..], &mut d_re[..0], &mut d_im[..0]];
-        let mut out = LinesMut::<1, 2>::new(&mut slices, 5, 1);
+        let mut out = LinesMut::<Four, 1, 2>::new(&mut slices, 5, 1, WIDTH);
         out.put(0, Four([1.0, 2.0, 3.0, 4.0]));
         out.put(1, Four::of(7.0));
         assert_eq!(parts[..2], [[9.0, 1.0, 2.0, 3.0, 4.0], [9.0, 7.0, 7.0, 7.0, 7.0]]);

@@ -151,6 +151,17 @@ macro_rules! vector {
                 }))
             }
         }
+
+        impl<const N: usize, const R: usize> LinesMut<'_, $vector, N, R> {
+            /// Puts a result at its place.
+            #[target_feature(enable = $instructions)]
+            #[inline]
+            pub fn put(&mut self, place: usize, value: $vector) {
+                let (part, row) = place_of_line!(place, N, R);
+                // SAFETY: `LinesMut::new` has seen that each part has all rows, and that each row has these lines.
+                unsafe { $store(self.parts[part].wrapping_add(row * self.lines), value.0) }
+            }
+        }
     };
 }
 
@@ -213,17 +224,6 @@ impl Four {
     pub fn choose(test: Self, a: Self, b: Self) -> Self {
         let above = _mm256_cmp_pd::<_CMP_GT_OQ>(test.0, _mm256_setzero_pd());
         Four(_mm256_blendv_pd(b.0, a.0, above))
-    }
-}
-
-impl<const N: usize, const R: usize> LinesMut<'_, N, R> {
-    /// Puts a result at its place.
-    #[target_feature(enable = "avx")]
-    #[inline]
-    pub fn put(&mut self, place: usize, value: Four) {
-        let (part, row) = place_of_line!(place, N, R);
-        // SAFETY: `LinesMut::new` has seen that each part has all rows, and that each row has four lines from there on.
-        unsafe { _mm256_storeu_pd(self.parts[part].wrapping_add(row * self.lines), value.0) }
     }
 }
 

@@ -38,7 +38,7 @@ impl Form {
                 ("constants", "&[seam::Lanes; CONSTANTS]".into()),
                 (FREQUENCIES, "&seam::Lanes".into()),
                 ("first", "usize".into()),
-                ("out", format!("&mut LinesMut<'_, {outputs}, {results}>")),
+                ("out", format!("&mut LinesMut<'_, V, {outputs}, {results}>")),
             ],
         }
     }

@@ -18,44 +18,58 @@ const SETS: [&str; 6] = [
 ];
 
 /// Functions over vectors, and the types by which the runtime calls them.
-pub type Vectors = (Vec<String>, String);
-
-/// Those of several parameter sets.
-pub fn of_sets(straight: &Straight, functions: &[Function]) -> Vectors {
-    let functions = functions.iter().filter(|own| SETS.contains(&own.name.as_str()));
-    functions
-        .map(|own| (function(straight, own, Form::Sets), called_for_sets(own)))
-        .unzip()
+#[derive(Default)]
+pub struct Vectors {
+    /// Those over four numbers and over eight.
+    pub wide: Vec<String>,
+    /// Those over four alone.
+    pub fours: Vec<String>,
+    /// The types.
+    pub types: String,
 }
 
-/// Those of lines of a response.
-pub fn of_lines(straight: &Straight, functions: &[Function], about: &About) -> Vectors {
-    let lines = functions.iter().filter_map(|own| {
-        let outputs = outputs(about, own)?;
-        let written = function(straight, own, Form::Lines(outputs));
-        Some((written, called_for_lines(own, outputs)))
-    });
-    lines.unzip()
+/// Those of several parameter sets and of lines of a response.
+///
+/// A response to a force is there over four numbers alone: rustc would take a third longer for vectors of eight of all
+/// responses, and what is fitted again and again are those to a road.
+pub fn vectors(straight: &Straight, functions: &[Function], about: &About) -> Vectors {
+    let mut vectors = Vectors::default();
+    for own in functions {
+        if SETS.contains(&own.name.as_str()) {
+            vectors.wide.push(function(straight, own, Form::Sets));
+            vectors.types += &called_for_sets(own);
+        } else if let Some((outputs, road)) = response(about, own) {
+            let to = if road { &mut vectors.wide } else { &mut vectors.fours };
+            to.push(function(straight, own, Form::Lines(outputs)));
+            vectors.types += &called_for_lines(own, outputs, road);
+        }
+    }
+    vectors
 }
 
-/// How many outputs a response has.
-fn outputs(about: &About, function: &Function) -> Option<usize> {
+/// How many outputs a response has, and whether it is to a road.
+fn response(about: &About, function: &Function) -> Option<(usize, bool)> {
     let mut responses = about.responses.iter().enumerate();
-    let (_, layout) = responses.find(|(place, _)| {
+    let (place, layout) = responses.find(|(place, _)| {
         let is = |suffix| response_name(about, *place, suffix) == function.name;
         is("") || is("_jacobian")
     })?;
-    Some(layout.outputs.len())
+    Some((layout.outputs.len(), about.excitations[place].road))
 }
 
-fn called_for_lines(function: &Function, outputs: usize) -> String {
+fn called_for_lines(function: &Function, outputs: usize, road: bool) -> String {
     let (name, results) = (&function.name, function.program.outputs.len());
+    let (four, eight) = match road {
+        true => (format!("wide::four::{name}"), format!("Some(wide::eight::{name})")),
+        false => (format!("fours::{name}"), "None".to_string()),
+    };
     format!(
         "
 struct {type_name};
 
 impl Responds<CONSTANTS, {outputs}, {results}> for {type_name} {{
-    const FOUR: unsafe fn(&[seam::Lanes; CONSTANTS], &seam::Lanes, usize, &mut LinesMut<'_, {outputs}, {results}>) = lines::{name};
+    const FOUR: OverLines<Four, CONSTANTS, {outputs}, {results}> = {four};
+    const EIGHT: Option<OverLines<Eight, CONSTANTS, {outputs}, {results}>> = {eight};
 
     fn one(constants: &[f64; CONSTANTS], omega: f64, out: &mut [f64; {results}]) {{
         straight::{name}(constants, omega, out);
@@ -80,8 +94,8 @@ struct {type_name}<'a> {{
 {fields}}}
 
 impl Sets<{results}> for {type_name}<'_> {{
-    const FOUR: unsafe fn(&Self, usize, &mut [seam::Lanes; {results}]) = sets::four::{name};
-    const EIGHT: unsafe fn(&Self, usize, &mut [seam::Lanes; {results}]) = sets::eight::{name};
+    const FOUR: unsafe fn(&Self, usize, &mut [seam::Lanes; {results}]) = wide::four::{name};
+    const EIGHT: unsafe fn(&Self, usize, &mut [seam::Lanes; {results}]) = wide::eight::{name};
 
     fn one(&self, set: usize, out: &mut [f64; {results}]) {{
         straight::{name}({of_one}, out);
