@@ -1,8 +1,12 @@
 //! The vectors of x86-64: four numbers with AVX, eight with AVX-512.
 //!
 //! Each method, and each function that calls it, asks for the same instructions and no more. Only then does rustc inline it before LLVM
-//! sees the thousands of calls of a model, which LLVM takes far longer for.
+//! sees the thousands of calls of a model, which LLVM takes far longer for. They are safe on a machine that has these instructions.
 #![allow(unsafe_code, reason = "vectors are loaded and stored through pointers")]
+#![allow(
+    clippy::missing_safety_doc,
+    reason = "all functions need the same, which is said above"
+)]
 
 use std::arch::x86_64::*;
 use std::array;
