@@ -131,6 +131,7 @@ impl Pair {
         let mut constants = room(about.constants);
         sets.prepare_sets(&ps, &mut constants);
         sets_equal(&constants, [&ps, &[], &[]], |[p, _, _], to| alone.prepare(p, to));
+        self.compare_responses_of_sets(sets, &constants);
         let mut rates = room(about.states.len());
         sets.derivative_sets(&constants, &xs, &us, &mut rates);
         sets_equal(&rates, [&constants, &xs, &us], |[c, x, u], to| {
@@ -213,23 +214,36 @@ impl Pair {
 
     /// Eleven lines: less than a block.
     fn compare_responses(&self, constants: &[f64], numbers: &[f64]) {
-        let omega: Vec<f64> = numbers[..11].iter().map(|n| 50.0 + 49.0 * n).collect();
+        // Fewer lines than a vector holds, as many, and some that fill no second one.
+        for lines in [3, LANES, 11] {
+            let omega: Vec<f64> = numbers[..lines].iter().map(|n| 50.0 + 49.0 * n).collect();
+            for (excitation, layout) in self.model.about().responses.iter().enumerate() {
+                let (n, m) = (lines * layout.outputs.len(), lines * layout.jacobian.len());
+                for jacobian in [false, true] {
+                    let of = |model: &dyn Model, to: &mut [f64]| {
+                        let (re, im, slopes) = split(to, n, m);
+                        let jacobian = jacobian.then_some(slopes);
+                        model.response(excitation, constants, &omega, ResponseMut { re, im, jacobian });
+                    };
+                    equal(2 * n + 2 * m, |to| of(self.model, to), |to| of(&self.evaluator, to));
+                }
+            }
+        }
+    }
+
+    /// At one line, which is what each set has alone.
+    fn compare_responses_of_sets(&self, sets: &dyn Model, constants: &[Lanes]) {
         for (excitation, layout) in self.model.about().responses.iter().enumerate() {
-            let (n, m) = (11 * layout.outputs.len(), 11 * layout.jacobian.len());
-            for jacobian in [false, true] {
-                let generated = |to: &mut [f64]| {
+            for with_jacobian in [false, true] {
+                let (n, m) = (layout.outputs.len(), layout.slopes(with_jacobian));
+                let mut rows = vec![[0.0; LANES]; layout.rows(with_jacobian)];
+                sets.response_sets(excitation, constants, &[60.0], with_jacobian, &mut rows);
+                sets_equal(&rows, [constants, &[], &[]], |[constants, _, _], to| {
                     let (re, im, slopes) = split(to, n, m);
-                    let jacobian = jacobian.then_some(slopes);
-                    self.model
-                        .response(excitation, constants, &omega, ResponseMut { re, im, jacobian });
-                };
-                let interpreted = |to: &mut [f64]| {
-                    let (re, im, slopes) = split(to, n, m);
-                    let jacobian = jacobian.then_some(slopes);
-                    self.evaluator
-                        .response(excitation, constants, &omega, ResponseMut { re, im, jacobian });
-                };
-                equal(2 * n + 2 * m, generated, interpreted);
+                    let jacobian = with_jacobian.then_some(slopes);
+                    let into = ResponseMut { re, im, jacobian };
+                    self.evaluator.response(excitation, constants, &[60.0], into);
+                });
             }
         }
     }

@@ -259,14 +259,7 @@ impl Model for Machine {
         }
     }
 
-    fn response_sets(
-        &self,
-        excitation: usize,
-        constants: &[Lanes],
-        omega: &[f64],
-        with_jacobian: bool,
-        into: &mut [Lanes],
-    ) {
+    fn line_sets(&self, excitation: usize, constants: &[Lanes], omega: f64, with_jacobian: bool, into: &mut [Lanes]) {
         let known = self.responses.get(excitation);
         let known = known.zip(self.programs.responses.get(excitation));
         let code = known.and_then(|([value, whole], programs)| match with_jacobian {
@@ -276,13 +269,10 @@ impl Model for Machine {
         let Some(code) = code else {
             return self
                 .interpreter
-                .response_sets(excitation, constants, omega, with_jacobian, into);
+                .line_sets(excitation, constants, omega, with_jacobian, into);
         };
-        let rows = self.about().responses[excitation].rows(with_jacobian);
-        for (omega, into) in omega.iter().zip(into.chunks_exact_mut(rows)) {
-            let frequency = [[*omega; LANES]];
-            code.sets(&[(Part::Constants, constants), (Part::Frequency, &frequency)], into);
-        }
+        let frequency = [[omega; LANES]];
+        code.sets(&[(Part::Constants, constants), (Part::Frequency, &frequency)], into);
     }
 
     fn contact_force(&self, constants: &[f64], x: &[f64], s: f64, v: f64) -> f64 {

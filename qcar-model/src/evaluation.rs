@@ -1,14 +1,14 @@
 //! Arguments and results of an evaluation.
 
-/// The contact of a tyre that rolls over a profile, as an input of its model.
+/// What a tyre that rolls over a profile gives to its model, or what several give, as a row of each.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Contact {
+pub struct Contact<T = f64> {
     /// Equivalent stretch, m: minus the deflection on a flat road that would have the same contact.
-    pub s: f64,
+    pub s: T,
     /// Its rate, m/s.
-    pub v: f64,
+    pub v: T,
     /// The force on the wheel along [`crate::ContactAbout::axes`], N.
-    pub force: [f64; 2],
+    pub force: [T; 2],
 }
 
 /// Number of parameter sets, or of lines of a frequency response, that are computed together.
@@ -17,16 +17,8 @@ pub const LANES: usize = 8;
 /// One value for each of several parameter sets.
 pub type Lanes = [f64; LANES];
 
-/// The contacts of several parameter sets: as [`Contact`], row by row.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Contacts {
-    /// Equivalent stretches, m.
-    pub s: Lanes,
-    /// Their rates, m/s.
-    pub v: Lanes,
-    /// The forces on the wheels along [`crate::ContactAbout::axes`], N.
-    pub force: [Lanes; 2],
-}
+/// What tyres that roll give to several parameter sets.
+pub type Contacts = Contact<Lanes>;
 
 impl Contacts {
     /// The contact of a set.

@@ -114,9 +114,7 @@ pub trait Model: Send + Sync {
     /// output, a row with the imaginary part of each, and, `with_jacobian`, the same for the parameter Jacobian. The
     /// bits are the same.
     ///
-    /// The rows of all lines of eight sets seldom fit into a cache, so it is faster to compute and use a few lines at a
-    /// time. A model without its own code for sets computes one set after another; then a call of [`Model::response`]
-    /// for each set with all lines is faster.
+    /// The rows of all lines of eight sets seldom fit into a cache: it pays to ask for some lines at a time, and to use them at once.
     fn response_sets(
         &self,
         excitation: usize,
@@ -125,20 +123,22 @@ pub trait Model: Send + Sync {
         with_jacobian: bool,
         into: &mut [Lanes],
     ) {
+        let rows = self.about().responses[excitation].rows(with_jacobian);
+        for (omega, into) in omega.iter().zip(into.chunks_exact_mut(rows)) {
+            self.line_sets(excitation, constants, *omega, with_jacobian, into);
+        }
+    }
+
+    /// [`Model::response_sets`] of one line.
+    fn line_sets(&self, excitation: usize, constants: &[Lanes], omega: f64, with_jacobian: bool, into: &mut [Lanes]) {
         let layout = &self.about().responses[excitation];
         let (n, m) = (layout.outputs.len(), layout.slopes(with_jacobian));
-        for set in 0..LANES {
-            let constants: Vec<f64> = constants.iter().map(|row| row[set]).collect();
-            let mut found = vec![0.0; omega.len() * layout.rows(with_jacobian)];
-            let (re, rest) = found.split_at_mut(n * omega.len());
-            let (im, rest) = rest.split_at_mut(n * omega.len());
-            let jacobian = with_jacobian.then(|| rest.split_at_mut(m * omega.len()));
-            self.response(excitation, &constants, omega, ResponseMut { re, im, jacobian });
-            for (line, rows) in into.chunks_exact_mut(layout.rows(with_jacobian)).enumerate() {
-                let column = found.iter().skip(line).step_by(omega.len());
-                rows.iter_mut().zip(column).for_each(|(row, value)| row[set] = *value);
-            }
-        }
+        one_by_one([constants, &[], &[]], into, |constants, _, _, found| {
+            let (re, rest) = found.split_at_mut(n);
+            let (im, rest) = rest.split_at_mut(n);
+            let jacobian = with_jacobian.then(|| rest.split_at_mut(m));
+            self.response(excitation, constants, &[omega], ResponseMut { re, im, jacobian });
+        });
     }
 
     /// The resisting force (N, positive in tension) of the tyre link while it rolls, at stretch `s` (m, negative in

@@ -1,4 +1,22 @@
-//! Loops with the widest vectors of the machine that they run on.
+//! Loops and straight-line code with the widest vectors of the machine that they run on.
+
+// A single number.
+mod number;
+// The results of a response.
+mod lines;
+// Four numbers, on any processor.
+#[cfg(any(test, not(target_arch = "x86_64")))]
+mod portable;
+// Four and eight numbers, with the instructions of x86-64.
+#[cfg(target_arch = "x86_64")]
+mod x86;
+
+pub use lines::LinesMut;
+pub use number::{sign, table};
+#[cfg(not(target_arch = "x86_64"))]
+pub use portable::{Four, Four as Eight};
+#[cfg(target_arch = "x86_64")]
+pub use x86::{Eight, Four};
 
 /// Loops over plain numbers that gain by wide vectors.
 pub(crate) trait Loops {
@@ -13,31 +31,73 @@ pub(crate) trait Loops {
 #[inline]
 pub(crate) fn widest<L: Loops>(loops: L) -> L::Result {
     #[cfg(target_arch = "x86_64")]
-    if std::arch::is_x86_feature_detected!("avx2") {
-        #[allow(unsafe_code, reason = "the instruction set was detected above")]
-        // SAFETY: this machine has AVX2, and the function requires nothing else.
+    if has_avx2() {
+        #[allow(unsafe_code, reason = "the instruction set is there: it has just been asked for")]
+        // SAFETY: this machine has AVX2, and the function asks for nothing else.
         return unsafe { with_avx2(loops) };
     }
     loops.run()
+}
+
+/// Runs loops over the [lanes](crate::model::LANES) of several systems, which a vector of AVX-512 holds all; without it, as
+/// [`widest`]. The bits are the same.
+#[inline]
+pub(crate) fn over_lanes<L: Loops>(loops: L) -> L::Result {
+    #[cfg(target_arch = "x86_64")]
+    if has_avx512() {
+        #[allow(unsafe_code, reason = "the instruction set is there: it has just been asked for")]
+        // SAFETY: this machine has both parts of AVX-512, and the function asks for nothing else.
+        return unsafe { with_avx512(loops) };
+    }
+    widest(loops)
+}
+
+/// How many numbers straight-line code computes together.
+#[derive(Clone, Copy)]
+#[cfg_attr(
+    not(target_arch = "x86_64"),
+    allow(dead_code, reason = "other processors always have `Four`")
+)]
+pub(crate) enum Width {
+    /// A single number.
+    One,
+    /// [`Four`].
+    Four,
+    /// [`Eight`].
+    Eight,
+}
+
+/// The widest vectors of this machine.
+#[inline]
+pub(crate) fn width() -> Width {
+    #[cfg(not(target_arch = "x86_64"))]
+    return Width::Four;
+    #[cfg(target_arch = "x86_64")]
+    if has_avx512() {
+        Width::Eight
+    } else if has_avx2() {
+        Width::Four
+    } else {
+        Width::One
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[inline]
+fn has_avx2() -> bool {
+    std::arch::is_x86_feature_detected!("avx2")
+}
+
+#[cfg(target_arch = "x86_64")]
+#[inline]
+fn has_avx512() -> bool {
+    std::arch::is_x86_feature_detected!("avx512f") && std::arch::is_x86_feature_detected!("avx512dq")
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
 fn with_avx2<L: Loops>(loops: L) -> L::Result {
     loops.run()
-}
-
-/// Runs loops over the [lanes](crate::model::LANES) of several systems with AVX-512, one vector of which holds all
-/// lanes; without it, as [`widest`]. The bits are the same.
-#[inline]
-pub(crate) fn over_lanes<L: Loops>(loops: L) -> L::Result {
-    #[cfg(target_arch = "x86_64")]
-    if std::arch::is_x86_feature_detected!("avx512f") && std::arch::is_x86_feature_detected!("avx512dq") {
-        #[allow(unsafe_code, reason = "the instruction set was detected above")]
-        // SAFETY: this machine has both parts of AVX-512, and the function requires nothing else.
-        return unsafe { with_avx512(loops) };
-    }
-    widest(loops)
 }
 
 #[cfg(target_arch = "x86_64")]

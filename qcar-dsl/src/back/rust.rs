@@ -10,13 +10,20 @@ mod about;
 mod names;
 // The parameters as a type.
 mod parameters;
+// How Rust writes an operation.
+mod language;
 // A piece of a program as a Rust function.
 mod function;
+// Functions over vectors.
+mod vectors;
 // Sizes and functions over typed vectors.
 mod typed;
 // The implementation of the trait.
 mod seam;
 
+use function::Form;
+
+use crate::back::straight::Straight;
 use crate::program::schedule::Compiled;
 
 /// The name of the type that stands for a model: `AxleD` for `axle_d`.
@@ -29,14 +36,22 @@ pub fn type_name(model: &str) -> String {
 /// The same model gives the same bytes, in whatever folder its file is; `FINGERPRINT` in the text is a hash of the
 /// rest.
 pub fn module(compiled: &Compiled) -> String {
+    let straight = Straight::new(compiled);
+    let functions = straight.functions("a line");
+    let numbers = functions
+        .iter()
+        .map(|own| function::function(&straight, own, Form::Numbers));
+    let vectors = vectors::vectors(&straight, &functions, &compiled.about);
     let sections = [
         USES.to_string(),
         typed::sizes(&compiled.about),
         parameters::parameters(compiled),
         typed::functions(compiled),
-        seam::implementation(compiled) + &seam::blocks(&compiled.about) + &seam::sets(&compiled.about),
+        seam::implementation(compiled) + &vectors.types,
         about::about(&compiled.about),
-        format!("{STRAIGHT}{}}}\n", indent(&function::functions(compiled).join("\n"))),
+        within(STRAIGHT, numbers, "}"),
+        within(WIDE, vectors.wide.iter().map(|own| indent(own)), "    }\n}"),
+        within(FOURS, vectors.fours.iter().map(|own| indent(own)), "    }\n}"),
     ];
     let body = sections.join("\n");
     let fingerprint = format!(
@@ -58,7 +73,8 @@ pub fn module(compiled: &Compiled) -> String {
 const ALLOW: &str = "#[allow(clippy::all, unused, non_snake_case, reason = \"names and numbers are the model's, and not every model needs all\")]\n";
 
 const USES: &str =
-    "use ::qcar_runtime::generated::{Block, Jacobians, LINES, Sets, StateSpace, fixed, fixed_mut, no_response, respond, sign, together};
+    "use ::qcar_runtime::generated::{Eight, Four, Jacobians, LinesMut, OverLines, Responds, Sets, StateSpace};
+use ::qcar_runtime::generated::{fixed, fixed_mut, no_response, one, respond, respond_sets, together};
 use ::qcar_runtime::model as seam;
 use ::qcar_runtime::model::{Entry, Matrix};
 use ::qcar_runtime::nalgebra::SVector;
@@ -67,9 +83,30 @@ use ::std::borrow::Cow::Borrowed;
 
 const STRAIGHT: &str = "/// The straight-line functions, over arrays: no branch, no bounds check, no allocation.
 pub mod straight {
-    use super::{CONSTANTS, INPUTS, LINES, PARAMETERS, STATES, seam, sign};
-
+    use super::{CONSTANTS, INPUTS, PARAMETERS, STATES, seam};
+    use ::qcar_runtime::generated::{sign, table};
 ";
+
+const WIDE: &str =
+    "/// Those of several parameter sets, or lines of a response, over vectors of four and of eight numbers.
+mod wide {
+    use super::*;
+
+    ::qcar_runtime::in_vectors! {
+";
+
+const FOURS: &str = "/// Those of lines of other responses, over vectors of four numbers.
+mod fours {
+    use super::*;
+
+    ::qcar_runtime::in_fours! {
+";
+
+/// Functions between the beginning and the end of their module.
+fn within(head: &str, functions: impl Iterator<Item = String>, end: &str) -> String {
+    let functions: String = functions.map(|own| format!("\n{}", indent(&own))).collect();
+    format!("{head}{functions}{end}\n")
+}
 
 fn indent(text: &str) -> String {
     let margin = |line: &str| if line.is_empty() { "" } else { "    " };

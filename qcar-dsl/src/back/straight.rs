@@ -26,7 +26,7 @@ use crate::program::schedule::Compiled;
 use crate::program::{Program, Value};
 
 pub use kinks::kinks;
-pub use language::{Language, ProgramText, usual_name};
+pub use language::{Language, Operator, ProgramText, usual_name};
 pub use locals::{Locals, Names};
 pub use pieces::{Leaf, Pieces, computed};
 pub use results::{entry_name, parameter_jacobian_names, sensitivity_names};

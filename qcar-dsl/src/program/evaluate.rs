@@ -168,14 +168,7 @@ impl Model for Evaluator {
         }
     }
 
-    fn response_sets(
-        &self,
-        excitation: usize,
-        constants: &[Lanes],
-        omega: &[f64],
-        with_jacobian: bool,
-        into: &mut [Lanes],
-    ) {
+    fn line_sets(&self, excitation: usize, constants: &[Lanes], omega: f64, with_jacobian: bool, into: &mut [Lanes]) {
         let Some(response) = self.responses.get(excitation) else {
             return;
         };
@@ -183,11 +176,8 @@ impl Model for Evaluator {
             false => &response.value,
             true => &response.with_jacobian,
         };
-        let rows = self.about.responses[excitation].rows(with_jacobian);
-        for (omega, into) in omega.iter().zip(into.chunks_exact_mut(rows)) {
-            let frequency = [[*omega; LANES]];
-            code.sets(&[(Part::Constants, constants), (Part::Frequency, &frequency)], into);
-        }
+        let frequency = [[omega; LANES]];
+        code.sets(&[(Part::Constants, constants), (Part::Frequency, &frequency)], into);
     }
 
     fn contact_force(&self, constants: &[f64], x: &[f64], s: f64, v: f64) -> f64 {

@@ -6,15 +6,17 @@ use crate::back::straight::Names;
 const RESERVED: &[&str] = &[
     "CONSTANTS",
     "INPUTS",
-    "LINES",
     "PARAMETERS",
     "STATES",
+    "V",
     "f64",
+    "first",
     "kept",
-    "line",
     "out",
     "seam",
+    "sets",
     "sign",
+    "table",
 ];
 
 /// The names of local variables beside these arguments.

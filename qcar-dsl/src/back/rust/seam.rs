@@ -57,116 +57,54 @@ fn response(about: &About) -> String {
     if about.responses.is_empty() {
         return String::new();
     }
-    let arm = |place: usize, suffix: &str| {
-        let block = camel(&response_name(about, place, suffix));
+    let arm = |driver: &str, place: usize, suffix: &str| {
+        let code = camel(&response_name(about, place, suffix));
         format!(
-            "            ({place}, {}) => respond(omega, into, &{block}(constants)),\n",
+            "            ({place}, {}) => {driver}::<{code}, _, _, _>(constants, omega, into),\n",
             !suffix.is_empty()
         )
     };
-    let arms: String = (0..about.responses.len())
-        .flat_map(|place| [arm(place, ""), arm(place, "_jacobian")])
-        .collect();
+    let arms = |driver: &str| -> String {
+        let both = |place| [arm(driver, place, ""), arm(driver, place, "_jacobian")];
+        (0..about.responses.len()).flat_map(both).collect()
+    };
     format!(
         "
     fn response(&self, excitation: usize, constants: &[f64], omega: &[f64], into: seam::ResponseMut<'_>) {{
         let constants = fixed(constants);
         match (excitation, into.jacobian.is_some()) {{
-{arms}            _ => no_response(&ABOUT, excitation),
+{each}            _ => no_response(&ABOUT, excitation),
         }}
     }}
-"
-    )
-}
 
-/// The straight-line functions of the responses as types, which the runtime compiles once for each instruction set.
-pub fn blocks(about: &About) -> String {
-    let block = |place: usize, suffix: &str| {
-        let (function, layout) = (response_name(about, place, suffix), &about.responses[place]);
-        let jacobian = if suffix.is_empty() { 0 } else { layout.jacobian.len() };
-        let (name, rows) = (camel(&function), 2 * (layout.outputs.len() + jacobian));
-        format!(
-            "
-struct {name}<'a>(&'a [f64; CONSTANTS]);
-
-impl Block<{rows}> for {name}<'_> {{
-    #[inline(always)]
-    fn compute(&self, frequencies: &[f64; LINES], rows: &mut [[f64; LINES]; {rows}]) {{
-        straight::{function}(self.0, frequencies, rows);
+    fn line_sets(&self, excitation: usize, constants: &[seam::Lanes], omega: f64, with_jacobian: bool, into: &mut [seam::Lanes]) {{
+        let constants = fixed(constants);
+        match (excitation, with_jacobian) {{
+{sets}            _ => no_response(&ABOUT, excitation),
+        }}
     }}
-}}
-"
-        )
-    };
-    (0..about.responses.len())
-        .flat_map(|place| [block(place, ""), block(place, "_jacobian")])
-        .collect()
-}
-
-const PARAMETERS: &str = "[seam::Lanes; PARAMETERS]";
-const CONSTANTS: &str = "[seam::Lanes; CONSTANTS]";
-const STATES: &str = "[seam::Lanes; STATES]";
-const INPUTS: &str = "[seam::Lanes; INPUTS]";
-
-/// The functions of several parameter sets; the runtime compiles each of them once for each instruction set.
-pub fn sets(about: &About) -> String {
-    let of_model: [(&str, &[&str], usize); 4] = [
-        ("prepare", &[PARAMETERS], about.constants),
-        ("derivative", &[CONSTANTS, STATES, INPUTS], about.states.len()),
-        ("matrices", &[PARAMETERS, STATES, INPUTS], about.matrices.len()),
-        (
-            "sensitivities",
-            &[PARAMETERS, STATES, INPUTS],
-            about.sensitivities.len(),
-        ),
-    ];
-    let of_contact: [(&str, &[&str], usize); 2] = [
-        ("contact_force", &[CONSTANTS, STATES, "seam::Lanes", "seam::Lanes"], 1),
-        (
-            "rolling_derivative",
-            &[CONSTANTS, STATES, INPUTS, "seam::Contacts"],
-            about.states.len(),
-        ),
-    ];
-    let rolls = about.contact.is_some();
-    let functions = of_model.iter().chain(of_contact.iter().filter(|_| rolls));
-    let written = functions.map(|(function, types, rows)| {
-        let fields: Vec<String> = types.iter().map(|own| format!("&'a {own}")).collect();
-        let arguments: Vec<String> = (0..types.len()).map(|place| format!("self.{place}")).collect();
-        format!(
-            "
-struct {name}<'a>({fields});
-
-impl Sets<{rows}> for {name}<'_> {{
-    #[inline(always)]
-    fn compute(&self, rows: &mut [seam::Lanes; {rows}]) {{
-        straight::{function}_sets({arguments}, rows);
-    }}
-}}
 ",
-            name = camel(&format!("{function}_sets")),
-            fields = fields.join(", "),
-            arguments = arguments.join(", "),
-        )
-    });
-    written.collect()
+        each = arms("respond"),
+        sets = arms("respond_sets"),
+    )
 }
 
 const SETS: &str = "
     fn prepare_sets(&self, p: &[seam::Lanes], constants: &mut [seam::Lanes]) {
-        together(&PrepareSets(fixed(p)), constants);
+        together(&PrepareSets { p: fixed(p) }, constants);
     }
 
     fn derivative_sets(&self, constants: &[seam::Lanes], x: &[seam::Lanes], u: &[seam::Lanes], dx: &mut [seam::Lanes]) {
-        together(&DerivativeSets(fixed(constants), fixed(x), fixed(u)), dx);
+        let sets = DerivativeSets { constants: fixed(constants), x: fixed(x), u: fixed(u) };
+        together(&sets, dx);
     }
 
     fn matrices_sets(&self, p: &[seam::Lanes], x: &[seam::Lanes], u: &[seam::Lanes], nonzeros: &mut [seam::Lanes]) {
-        together(&MatricesSets(fixed(p), fixed(x), fixed(u)), nonzeros);
+        together(&MatricesSets { p: fixed(p), x: fixed(x), u: fixed(u) }, nonzeros);
     }
 
     fn sensitivities_sets(&self, p: &[seam::Lanes], x: &[seam::Lanes], u: &[seam::Lanes], nonzeros: &mut [seam::Lanes]) {
-        together(&SensitivitiesSets(fixed(p), fixed(x), fixed(u)), nonzeros);
+        together(&SensitivitiesSets { p: fixed(p), x: fixed(x), u: fixed(u) }, nonzeros);
     }
 ";
 
@@ -188,8 +126,9 @@ const ROLLING: &str = "
     }
 
     fn contact_force_sets(&self, constants: &[seam::Lanes], x: &[seam::Lanes], s: &seam::Lanes, v: &seam::Lanes) -> seam::Lanes {
-        let mut force = [[0.0; LINES]];
-        together(&ContactForceSets(fixed(constants), fixed(x), s, v), &mut force);
+        let mut force = [seam::Lanes::default()];
+        let sets = ContactForceSets { constants: fixed(constants), x: fixed(x), s, v };
+        together(&sets, &mut force);
         force[0]
     }
 
@@ -201,6 +140,7 @@ const ROLLING: &str = "
         contacts: &seam::Contacts,
         dx: &mut [seam::Lanes],
     ) {
-        together(&RollingDerivativeSets(fixed(constants), fixed(x), fixed(u), contacts), dx);
+        let sets = RollingDerivativeSets { constants: fixed(constants), x: fixed(x), u: fixed(u), contact: contacts };
+        together(&sets, dx);
     }
 ";

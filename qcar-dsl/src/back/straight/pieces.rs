@@ -36,13 +36,8 @@ pub enum Leaf {
 impl<'a> Pieces<'a> {
     /// Cuts a program into pieces of about equal length.
     pub fn cut(program: &'a Program) -> Pieces<'a> {
-        Self::cut_to(program, LONGEST)
-    }
-
-    /// The same with pieces of at most `longest` operations.
-    pub fn cut_to(program: &'a Program, longest: usize) -> Pieces<'a> {
         let computed: Vec<Value> = computed(program).collect();
-        let count = computed.len().div_ceil(longest).max(1);
+        let count = computed.len().div_ceil(LONGEST).max(1);
         let length = computed.len().div_ceil(count).max(1);
         let mut pieces: Vec<Vec<Value>> = computed.chunks(length).map(<[Value]>::to_vec).collect();
         if pieces.is_empty() {
