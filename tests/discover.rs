@@ -175,7 +175,6 @@ fn a_light_top_mount_is_told_from_a_spring_in_series() {
     let campaign = folder.path().join("campaign");
     let truth = [("m_tm", 3.0), ("k_tm", 800e3), ("c_tm", 900.0)];
     let order = Order {
-        cleats: false,
         effects: vec![Hidden::new("top_mount", "damper", &truth)],
         ..Order::clean("c", 2000)
     };
@@ -586,12 +585,8 @@ fn of_short_sweeps(axle: &str, seed: u64, effect: Hidden) -> Value {
 
 /// The answer to a case of the blind matrix.
 fn of_matrix(seed: u64, name: &str) -> Value {
-    answer_to(of_case(seed, name))
-}
-
-fn of_case(seed: u64, name: &str) -> Order {
     let case = cases(seed).into_iter().find(|case| case.name == name);
-    case.expect("a case of the matrix").order
+    answer_to(case.expect("a case of the matrix").order)
 }
 
 fn answer_to(order: Order) -> Value {
@@ -642,12 +637,7 @@ fn is_a_bushing_or_a_hydraulic_mount(seed: u64) {
 /// times at the end of the K&C curves.
 #[test]
 fn a_law_of_a_spring_reaches_the_travel_of_kc_curves() {
-    let mut programme = Programme::fast().without_cleats();
-    programme.sweeps[2].level = 150;
-    let answer = answer_to(Order {
-        programme,
-        ..of_case(61, "sinh_spring@spring 0 seed 61")
-    });
+    let answer = of_matrix(61, "sinh_spring@spring 0 seed 61");
     let learned = &answer["learned"];
     assert_eq!(learned["laws"][0]["name"], "elastic_law", "{learned}");
     assert_eq!(learned["at"], "spring", "{learned}");

@@ -51,9 +51,3 @@ pub fn effects() -> &'static [ShippedEffect] {
 pub fn laws() -> &'static [ShippedEffect] {
     LAWS
 }
-
-/// The examples of `axle!` and `axle_file!`, which run here as tests.
-#[cfg(doctest)]
-#[doc = include_str!("../../qcar-derive/src/axle.md")]
-#[doc = include_str!("../../qcar-derive/src/axle_file.md")]
-pub struct Macros;

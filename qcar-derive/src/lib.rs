@@ -13,7 +13,7 @@ use syn::{LitStr, parse_macro_input};
 
 /// Compiles an axle that is written inline; the path of a family is relative to the package.
 ///
-#[doc = include_str!("axle.md")]
+#[doc = concat!("```\n", include_str!("axle_example.txt"), "```")]
 #[proc_macro]
 pub fn axle(tokens: proc_macro::TokenStream) -> proc_macro::TokenStream {
     let files = Files::new(&package());
@@ -27,7 +27,7 @@ pub fn axle(tokens: proc_macro::TokenStream) -> proc_macro::TokenStream {
 
 /// Compiles a model file; its path is relative to the package.
 ///
-#[doc = include_str!("axle_file.md")]
+#[doc = concat!("```\n", include_str!("axle_file_example.txt"), "```")]
 #[proc_macro]
 pub fn axle_file(tokens: proc_macro::TokenStream) -> proc_macro::TokenStream {
     let literal = parse_macro_input!(tokens as LitStr);
