@@ -122,7 +122,7 @@ pub trait Responds<const C: usize, const N: usize, const R: usize> {
     /// The results of four lines.
     const FOUR: OverLines<Four, C, N, R>;
 
-    /// The results of eight lines, which takes three quarters of the time of [`Self::FOUR`] twice, where it is worth compiling.
+    /// The results of eight lines, where they are worth compiling: they take 0.87 of the time of twice four.
     const EIGHT: Option<OverLines<Eight, C, N, R>>;
 
     /// The results at one frequency, rad/s.

@@ -30,7 +30,7 @@ pub struct Vectors {
 
 /// Those of several parameter sets and of lines of a response.
 ///
-/// A response to a force is there over four numbers alone: rustc would take a third longer for vectors of eight of all
+/// A response to a force is there over four numbers alone: rustc would take a quarter longer for vectors of eight of all
 /// responses, and what is fitted again and again are those to a road.
 pub fn vectors(straight: &Straight, functions: &[Function], about: &About) -> Vectors {
     let mut vectors = Vectors::default();
