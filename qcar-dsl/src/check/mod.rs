@@ -22,11 +22,12 @@ pub(crate) mod slopes;
 mod stiffness;
 // The rules.
 mod duplicates;
-mod force_rates;
 mod held;
 mod inertia;
 mod kinetic;
 mod nodes;
+// Force inputs on massless nodes.
+mod force_rates;
 mod passive;
 // Passivity of links whose laws use each other.
 mod coupled;

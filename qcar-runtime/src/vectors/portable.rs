@@ -121,9 +121,12 @@ mod tests {
     const A: Lanes = [1.5, -0.25, 0.0, -0.0, f64::NAN, 1e300, -7.0, f64::INFINITY];
     const B: Lanes = [-0.0, f64::NAN, 1e300, -7.0, f64::INFINITY, 1.5, -0.25, 0.0];
 
+    /// An operation over four numbers, and the same over one.
+    type Pair = (fn(Four, Four) -> Four, fn(f64, f64) -> f64);
+
     #[test]
     fn four_numbers_are_computed_as_each_alone() {
-        let operations: [(fn(Four, Four) -> Four, fn(f64, f64) -> f64); 8] = [
+        let operations: [Pair; 8] = [
             (|a, _| Four::neg(a), |a, _| -a),
             (Four::sub, |a, b| a - b),
             (Four::div, |a, b| a / b),
