@@ -1,7 +1,7 @@
 //! Support for generated models.
 //!
 //! Here slices become arrays of fixed size, once for a call, so that no bounds check is left in straight-line code; and
-//! [`in_vectors`] runs that code over vectors of several parameter sets, or of several lines of a frequency response.
+//! `in_vectors` runs that code over vectors of several parameter sets, or of several lines of a frequency response.
 
 // Straight-line code over vectors.
 mod in_vectors;
