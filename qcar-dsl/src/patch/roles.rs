@@ -49,11 +49,9 @@ impl Roles {
             let along = direction.name.text.clone();
             let on_tyre = upper(base, &along, tyre).map(|name| base.pointed_at(&along, &name));
             roles.along = Some(along.clone());
-            let rests = |mass: &str| {
-                let joined = |wheel: &String| reached(base, direction, wheel, &|link, _| !carries(link)).contains(mass);
-                on_tyre.as_ref().is_some_and(joined)
-            };
-            let heaviest = masses.heaviest(&along, on_tyre.as_deref(), &rests);
+            let carried_by = |mass: &String| reached(base, direction, mass, &|link, _| !carries(link));
+            let resting = on_tyre.as_ref().map_or_else(BTreeSet::new, carried_by);
+            let heaviest = masses.heaviest(&along, on_tyre.as_deref(), &|mass| resting.contains(mass));
             let body = heaviest.or_else(|| masses.heaviest(&along, on_tyre.as_deref(), &|_| true));
             roles.body.extend(body.map(|body| (along.clone(), body)));
             roles.wheel = on_tyre.map(|mass| carried(base, direction, mass, &masses, roles.body.get(&along)));
