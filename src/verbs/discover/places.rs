@@ -44,6 +44,19 @@ impl Site {
     }
 }
 
+impl PlaceStiffness {
+    /// A sentence on what a change there could explain, and on its kind.
+    pub fn sentence(&self) -> String {
+        let (share, at) = (100.0 * self.explains, self.site.name());
+        let kind = match self.shape {
+            Shape::FrictionLike => "it would act like friction".to_string(),
+            Shape::Other => "its kind is not clear".to_string(),
+            _ => format!("it would act like {}", self.shape.name()),
+        };
+        format!("something at {at} could explain {share:.1} % of the residuals of the sweeps; {kind}\n")
+    }
+}
+
 /// κ at one frequency, N/m; for a sensor, the factor on its signal minus 1.
 #[derive(Serialize)]
 struct Stiffness {

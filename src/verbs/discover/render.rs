@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use qcar_runtime::discover::answer::{DetectionLimit, Finding, Probable, Rival, Verdict};
-use qcar_runtime::discover::locate::Shape;
 use qcar_runtime::discover::numbers::EVEN;
 use qcar_runtime::discover::observe::Kind;
 use qcar_runtime::discover::posterior::{Explanation, Tile};
@@ -333,7 +332,7 @@ pub(super) fn text(of: &Answer) -> String {
     }
     if of.discovery.verdict != Verdict::None {
         out += &format!("\nlargest residuals of the campaign's model\n{}", tiles(of));
-        out += &missing(of).first().map_or_else(String::new, best_place);
+        out += &missing(of).first().map_or_else(String::new, PlaceStiffness::sentence);
     }
     out += &learned::text(of);
     if !of.discovery.detection_limits.is_empty() {
@@ -432,18 +431,6 @@ pub(crate) fn choice(of: &Answer, place: usize) -> &'static str {
 fn listed(findings: &[Finding]) -> String {
     let names = findings.iter().map(|own| format!("{} at {}", own.effect, own.at));
     names.collect::<Vec<_>>().join(" and ")
-}
-
-/// Sentence on the place that explains most.
-fn best_place(best: &PlaceStiffness) -> String {
-    let share = 100.0 * best.explains;
-    let at = best.site.name();
-    let kind = match best.shape {
-        Shape::FrictionLike => "it would act like friction".to_string(),
-        Shape::Other => "its kind is not clear".to_string(),
-        _ => format!("it would act like {}", best.shape.name()),
-    };
-    format!("something at {at} could explain {share:.1} % of the residuals of the sweeps; {kind}\n")
 }
 
 /// Detection limits as a table.
