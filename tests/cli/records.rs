@@ -82,6 +82,11 @@ fn pushed() -> Vec<(&'static str, Vec<f64>)> {
     vec![("push", force), ("z", mass([0.0, 0.0], push))]
 }
 
+/// A campaign of one record of the pushed mass.
+fn pushed_campaign(folder: &Path, model: &str, parameters: &str) {
+    campaign(folder, model, parameters, "band_limited = false", &[&pushed()]);
+}
+
 fn discovered(campaign: &str) -> Value {
     serde_json::from_str(&succeeds(&["discover", campaign, "--format", "json"])).unwrap()
 }
@@ -96,13 +101,7 @@ fn what_is_to_be_fitted_without_any_range_is_refused() {
         .map(|(name, value, unit)| parameter(name, value, unit, "range = [0.5, 2000.0]\n"));
     let parameters = format!("{mass}{}{spring}", parameter("c_body", 2.0, "N s/m", ""));
     let path = folder.path().to_str().unwrap();
-    campaign(
-        folder.path(),
-        "./open.axle",
-        &parameters,
-        "band_limited = false",
-        &[&pushed()],
-    );
+    pushed_campaign(folder.path(), "./open.axle", &parameters);
     let line = fs::read_to_string(folder.path().join("campaign.toml")).unwrap();
     let line = 1 + line.lines().position(|line| line == "[parameters.c_body]").unwrap();
     for verb in ["fit", "discover", "study"] {
@@ -125,13 +124,7 @@ fn what_is_to_be_fitted_without_any_range_is_refused() {
     }
     assert_eq!(qcar(&["fit", path, "--fix", "c_body", "--starts", "1"]).status, 0);
     // The shipped model has ranges of its own.
-    campaign(
-        folder.path(),
-        "one_mass",
-        &parameters,
-        "band_limited = false",
-        &[&pushed()],
-    );
+    pushed_campaign(folder.path(), "one_mass", &parameters);
     let ran = qcar(&["discover", path, "--out", folder.path().join("found").to_str().unwrap()]);
     assert_eq!(ran.status, 0, "{}", ran.stderr);
     let found = fs::read_to_string(folder.path().join("found/parameters.toml")).unwrap();
@@ -147,13 +140,7 @@ fn gains_of_input_and_output_limit_what_a_record_determines() {
     let parameters = parameter("m_body", 2.0, "kg", "range = [0.5, 2000.0]\n")
         + &parameter("c_body", 2.0, "N s/m", "range = [1e-9, 1e9]\n")
         + &parameter("k_body", 700.0, "N/m", "range = [0.5, 2000.0]\n");
-    campaign(
-        folder.path(),
-        "one_mass",
-        &parameters,
-        "band_limited = false",
-        &[&pushed()],
-    );
+    pushed_campaign(folder.path(), "one_mass", &parameters);
     let line = ["fit", folder.path().to_str().unwrap(), "--all-runs", "--starts", "1"];
     let fit: Value = serde_json::from_str(&succeeds(&[&line[..], &["--format", "json"]].concat())).unwrap();
     for (name, truth) in [("m_body", 2.0), ("c_body", 3.0), ("k_body", 800.0)] {
@@ -348,13 +335,7 @@ fn bounds_and_spans_of_time_are_told_as_such() {
     let bounded = |most: f64| {
         let range = format!("range = [0.5, {most}]\n");
         let parameters = known.replace("true", "false") + &parameter("c_body", 1.0, "N s/m", &range);
-        campaign(
-            folder.path(),
-            "one_mass",
-            &parameters,
-            "band_limited = false",
-            &[&pushed()],
-        );
+        pushed_campaign(folder.path(), "one_mass", &parameters);
         succeeds(&["discover", path, "--out", out.to_str().unwrap()])
     };
     let said = bounded(2.99);
