@@ -18,7 +18,7 @@ pub use portable::{Four, Four as Eight};
 #[cfg(target_arch = "x86_64")]
 pub use x86::{Eight, Four};
 
-/// Loops over plain numbers that gain by wide vectors.
+/// Loops over plain numbers that run faster with wide vectors.
 pub(crate) trait Loops {
     /// Their result.
     type Result;
@@ -32,8 +32,8 @@ pub(crate) trait Loops {
 pub(crate) fn widest<L: Loops>(loops: L) -> L::Result {
     #[cfg(target_arch = "x86_64")]
     if has_avx2() {
-        #[allow(unsafe_code, reason = "the instruction set is there: it has just been asked for")]
-        // SAFETY: this machine has AVX2, and the function asks for nothing else.
+        #[allow(unsafe_code, reason = "this machine has the instructions")]
+        // SAFETY: this machine has AVX2, and the function needs nothing else.
         return unsafe { with_avx2(loops) };
     }
     loops.run()
@@ -45,14 +45,14 @@ pub(crate) fn widest<L: Loops>(loops: L) -> L::Result {
 pub(crate) fn over_lanes<L: Loops>(loops: L) -> L::Result {
     #[cfg(target_arch = "x86_64")]
     if has_avx512() {
-        #[allow(unsafe_code, reason = "the instruction set is there: it has just been asked for")]
-        // SAFETY: this machine has both parts of AVX-512, and the function asks for nothing else.
+        #[allow(unsafe_code, reason = "this machine has the instructions")]
+        // SAFETY: this machine has both parts of AVX-512, and the function needs nothing else.
         return unsafe { with_avx512(loops) };
     }
     widest(loops)
 }
 
-/// How many numbers straight-line code computes together.
+/// Number of values that straight-line code computes together.
 #[derive(Clone, Copy)]
 #[cfg_attr(
     not(target_arch = "x86_64"),

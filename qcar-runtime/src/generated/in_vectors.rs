@@ -35,7 +35,7 @@ macro_rules! in_eights {
     };
 }
 
-/// The functions in a module for each width of vectors. They see what stands around the macro.
+/// The functions in a module for each width of vectors. They can use the names in scope around the macro.
 #[macro_export]
 macro_rules! in_vectors {
     ($($functions:tt)*) => {
@@ -70,7 +70,7 @@ pub fn one<const N: usize>(rows: &[Lanes; N], set: usize) -> [f64; N] {
 
 /// Straight-line code for several parameter sets at once, with `R` results.
 ///
-/// Where the functions are unsafe to call, that is for want of instructions: they may ask for those of their vector and no other.
+/// The functions are unsafe because they need the instructions of their vector. They must need no others.
 pub trait Sets<const R: usize> {
     /// The results of the four sets from the given one on, over [`Four`].
     const FOUR: unsafe fn(&Self, usize, &mut [Lanes; R]);
@@ -82,11 +82,11 @@ pub trait Sets<const R: usize> {
     fn one(&self, set: usize, out: &mut [f64; R]);
 }
 
-/// Computes what is wanted of several parameter sets, with the widest vectors of this machine.
+/// Computes the results of several parameter sets with the widest vectors of this machine.
 ///
 /// # Panics
 ///
-/// Where there are fewer rows than results.
+/// If there are fewer rows than results.
 #[inline]
 pub fn together<S: Sets<R>, const R: usize>(sets: &S, rows: &mut [Lanes]) {
     sets_in(width(), sets, fixed_mut(rows));
@@ -95,10 +95,10 @@ pub fn together<S: Sets<R>, const R: usize>(sets: &S, rows: &mut [Lanes]) {
 #[inline]
 fn sets_in<S: Sets<R>, const R: usize>(width: Width, sets: &S, rows: &mut [Lanes; R]) {
     match width {
-        #[allow(unsafe_code, reason = "the instruction set is there: it has been asked for")]
+        #[allow(unsafe_code, reason = "this machine has the instructions")]
         // SAFETY: this machine has the instructions of the vector, and the function asks for no others.
         Width::Eight => unsafe { (S::EIGHT)(sets, 0, rows) },
-        #[allow(unsafe_code, reason = "the instruction set is there: it has been asked for")]
+        #[allow(unsafe_code, reason = "this machine has the instructions")]
         // SAFETY: as above.
         Width::Four => [0, 4].into_iter().for_each(|set| unsafe { (S::FOUR)(sets, set, rows) }),
         Width::One => {
@@ -111,18 +111,19 @@ fn sets_in<S: Sets<R>, const R: usize>(width: Width, sets: &S, rows: &mut [Lanes
     }
 }
 
-/// The code of a response over a vector of lines: from constants and frequencies, rad/s, of which a vector holds those from a place on.
+/// Code of a response over a vector of lines. Its arguments are the constants, the frequencies in rad/s, the position of the first
+/// frequency of the vector, and the results.
 pub type OverLines<V, const C: usize, const N: usize, const R: usize> =
     unsafe fn(&[Lanes; C], &Lanes, usize, &mut LinesMut<'_, V, N, R>);
 
 /// The straight-line code of a frequency response with `N` outputs, over `C` constants, with `R` results.
 ///
-/// Where the functions are unsafe to call, that is for want of instructions: they may ask for those of their vector and no other.
+/// The functions are unsafe because they need the instructions of their vector. They must need no others.
 pub trait Responds<const C: usize, const N: usize, const R: usize> {
     /// The results of four lines.
     const FOUR: OverLines<Four, C, N, R>;
 
-    /// The results of eight lines, where they are worth compiling: they take 0.87 of the time of twice four.
+    /// The results of eight lines; `None` if they are not compiled. They take 0.87 of the time of twice four.
     const EIGHT: Option<OverLines<Eight, C, N, R>>;
 
     /// The results at one frequency, rad/s.
@@ -133,7 +134,7 @@ pub trait Responds<const C: usize, const N: usize, const R: usize> {
 ///
 /// # Panics
 ///
-/// Where `into` has no room for as many rows of `omega.len()` lines as there are results.
+/// If `into` has no room for a row of `omega.len()` lines for each result.
 pub fn respond<P: Responds<C, N, R>, const C: usize, const N: usize, const R: usize>(
     constants: &[f64; C],
     omega: &[f64],
@@ -149,18 +150,18 @@ pub fn respond<P: Responds<C, N, R>, const C: usize, const N: usize, const R: us
         return lines.for_each(|(line, omega)| into.compute_one::<P, C, N, R>(constants, *omega, line));
     };
     let constants = constants.map(|constant| [constant; LANES]);
-    // The last group is whole, too: it may compute again what the one before it has.
+    // The last group is whole too: it may compute some lines of the group before again.
     for first in (0..last).step_by(LANES).chain([last]) {
         into.compute::<P, C, N, R>(width(), &constants, fixed(&omega[first..]), first);
     }
 }
 
-/// A frequency response of several parameter sets at one line: the rows of all real parts, of all imaginary parts, and of the same of the
+/// A frequency response of several parameter sets at one line. The rows are all real parts, all imaginary parts, and the same of the
 /// Jacobian.
 ///
 /// # Panics
 ///
-/// Where there are fewer rows than results.
+/// If there are fewer rows than results.
 pub fn respond_sets<P: Responds<C, N, R>, const C: usize, const N: usize, const R: usize>(
     constants: &[Lanes; C],
     omega: f64,
@@ -176,15 +177,15 @@ pub fn respond_sets<P: Responds<C, N, R>, const C: usize, const N: usize, const 
     into.compute::<P, C, N, R>(width(), constants, &[omega; LANES], 0);
 }
 
-/// Where a response goes: the rows of the real parts, the imaginary parts, and the same of the Jacobian.
+/// The rows that receive a response: real parts, imaginary parts, and the same of the Jacobian.
 struct Rows<'a> {
     parts: [&'a mut [f64]; 4],
-    /// How many lines a row has.
+    /// Number of lines in a row.
     lines: usize,
 }
 
 impl Rows<'_> {
-    /// Eight lines, from one on.
+    /// Computes eight lines from `first` on.
     fn compute<P: Responds<C, N, R>, const C: usize, const N: usize, const R: usize>(
         &mut self,
         width: Width,
@@ -195,7 +196,7 @@ impl Rows<'_> {
         match (width, P::EIGHT) {
             (Width::Eight, Some(code)) => {
                 let mut out = LinesMut::new(&mut self.parts, self.lines, first, LANES);
-                #[allow(unsafe_code, reason = "the instruction set is there: it has been asked for")]
+                #[allow(unsafe_code, reason = "this machine has the instructions")]
                 // SAFETY: this machine has the instructions of the vector, and the function asks for no others.
                 unsafe {
                     code(constants, omega, 0, &mut out);
@@ -204,7 +205,7 @@ impl Rows<'_> {
             (Width::Four | Width::Eight, _) => {
                 for lane in [0, 4] {
                     let mut out = LinesMut::new(&mut self.parts, self.lines, first + lane, 4);
-                    #[allow(unsafe_code, reason = "the instruction set is there: it has been asked for")]
+                    #[allow(unsafe_code, reason = "this machine has the instructions")]
                     // SAFETY: as above; a machine with vectors of eight has those of four.
                     unsafe {
                         (P::FOUR)(constants, omega, lane, &mut out);

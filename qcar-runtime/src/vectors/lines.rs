@@ -1,4 +1,4 @@
-//! Where straight-line code over lines of a response puts its results.
+//! The results of straight-line code over lines of a response.
 
 use std::marker::PhantomData;
 
@@ -6,17 +6,17 @@ use std::marker::PhantomData;
 pub struct LinesMut<'a, V, const N: usize, const R: usize> {
     /// The first of these lines in the first row of each part.
     pub(super) parts: [*mut f64; 4],
-    /// How many lines a row has.
+    /// Number of lines in a row.
     pub(super) lines: usize,
     of: PhantomData<(&'a mut [f64], V)>,
 }
 
 impl<'a, V, const N: usize, const R: usize> LinesMut<'a, V, N, R> {
-    /// Those from the line `first` on, where a vector holds so many lanes.
+    /// The lines from `first` on; a vector holds `lanes` of them.
     ///
     /// # Panics
     ///
-    /// Where there are not so many lines, or a part has no room for a row of each result.
+    /// If there are fewer lines, or a part has no room for a row of each result.
     #[inline]
     pub(crate) fn new(parts: &'a mut [&mut [f64]; 4], lines: usize, first: usize, lanes: usize) -> Self {
         let slopes = R / 2 - N;
@@ -31,7 +31,7 @@ impl<'a, V, const N: usize, const R: usize> LinesMut<'a, V, N, R> {
     }
 }
 
-/// The part and the row of a result. As a macro, since a function would have to ask for the same instructions as its caller.
+/// The part and the row of a result. A macro, since rustc inlines a function only if it needs the same instructions as its caller.
 macro_rules! place_of_line {
     ($place:ident, $outputs:ident, $results:ident) => {{
         let slopes = $results / 2 - $outputs;

@@ -1,4 +1,4 @@
-//! Four numbers without instructions of a processor in particular: the optimiser finds how to compute them together.
+//! Four numbers for any processor; the optimiser chooses the instructions.
 #![allow(unsafe_code, reason = "rows of a response are written through pointers")]
 
 use std::array;
@@ -7,7 +7,7 @@ use super::lines::{LinesMut, place_of_line};
 use super::number;
 use crate::model::{LANES, Lanes};
 
-/// How many numbers there are.
+/// Number of values.
 const WIDTH: usize = 4;
 
 /// Four numbers.
@@ -49,7 +49,7 @@ impl Four {
         Four(array::from_fn(|lane| row[(set & (LANES - WIDTH)) + lane]))
     }
 
-    /// Puts it where the values of the sets from `set` on are.
+    /// Stores the values of the sets from `set` on.
     #[inline]
     pub fn store(self, row: &mut Lanes, set: usize) {
         let first = set & (LANES - WIDTH);
@@ -80,7 +80,7 @@ impl Four {
         powf, f64::powf;
     }
 
-    /// `a` where the test is above zero, else `b`.
+    /// `a` if the test is above zero, else `b`.
     #[inline]
     pub fn choose(test: Self, a: Self, b: Self) -> Self {
         Four(array::from_fn(
@@ -100,11 +100,11 @@ impl Four {
 }
 
 impl<const N: usize, const R: usize> LinesMut<'_, Four, N, R> {
-    /// Puts a result at its place.
+    /// Stores a result.
     #[inline]
     pub fn put(&mut self, place: usize, value: Four) {
         let (part, row) = place_of_line!(place, N, R);
-        // SAFETY: `LinesMut::new` has seen that each part has all rows, and that each row has these lines.
+        // SAFETY: `LinesMut::new` has checked that each part has all rows, and that each row has these lines.
         unsafe {
             self.parts[part]
                 .add(row * self.lines)

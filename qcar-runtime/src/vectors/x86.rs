@@ -1,11 +1,11 @@
 //! The vectors of x86-64: four numbers with AVX, eight with AVX-512.
 //!
-//! Each method, and each function that calls it, asks for the same instructions and no more. Only then does rustc inline it before LLVM
-//! sees the thousands of calls of a model, which LLVM takes far longer for. They are safe on a machine that has these instructions.
+//! Each method enables the same instructions as the functions that call it, and no others. Only then does rustc inline it; LLVM would
+//! take far longer for the thousands of calls of a model. The methods are safe on a machine that has these instructions.
 #![allow(unsafe_code, reason = "vectors are loaded and stored through pointers")]
 #![allow(
     clippy::missing_safety_doc,
-    reason = "all functions need the same, which is said above"
+    reason = "all functions need the same instructions, as the module states"
 )]
 
 use std::arch::x86_64::*;
@@ -28,7 +28,7 @@ macro_rules! of_each_lane {
     )*};
 }
 
-/// What the vectors of all widths have, from the names of their instructions.
+/// The methods of a vector, given the names of its instructions.
 macro_rules! vector {
     ($vector:ident, $of:ty, $instructions:literal, $lanes:literal,
      [$add:ident, $sub:ident, $mul:ident, $div:ident, $sqrt:ident, $fill:ident, $load:ident, $store:ident]) => {
@@ -44,7 +44,7 @@ macro_rules! vector {
             #[target_feature(enable = $instructions)]
             #[inline]
             pub fn load(row: &Lanes, set: usize) -> Self {
-                // SAFETY: what remains of the place is a multiple of the width, and less than the length of the row.
+                // SAFETY: the masked position is a multiple of the width and less than the length of the row.
                 $vector(unsafe {
                     $load(
                         ptr::from_ref(row)
@@ -54,7 +54,7 @@ macro_rules! vector {
                 })
             }
 
-            /// Puts it where the values of the sets from `set` on are.
+            /// Stores the values of the sets from `set` on.
             #[target_feature(enable = $instructions)]
             #[inline]
             pub fn store(self, row: &mut Lanes, set: usize) {
@@ -157,12 +157,12 @@ macro_rules! vector {
         }
 
         impl<const N: usize, const R: usize> LinesMut<'_, $vector, N, R> {
-            /// Puts a result at its place.
+            /// Stores a result.
             #[target_feature(enable = $instructions)]
             #[inline]
             pub fn put(&mut self, place: usize, value: $vector) {
                 let (part, row) = place_of_line!(place, N, R);
-                // SAFETY: `LinesMut::new` has seen that each part has all rows, and that each row has these lines.
+                // SAFETY: `LinesMut::new` has checked that each part has all rows, and that each row has these lines.
                 unsafe { $store(self.parts[part].wrapping_add(row * self.lines), value.0) }
             }
         }
@@ -190,7 +190,7 @@ vector!(
     ]
 );
 
-// What the instructions give of zeros and of what is not a number is what Rust's functions come to.
+// For zeros and NaN the results are those of Rust's functions.
 impl Four {
     /// `-a`
     #[target_feature(enable = "avx")]
@@ -206,7 +206,7 @@ impl Four {
         Four(_mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0))
     }
 
-    /// The smaller of two; the other one where one is not a number.
+    /// The smaller of two; the other one if one is NaN.
     #[target_feature(enable = "avx")]
     #[inline]
     pub fn min(a: Self, b: Self) -> Self {
@@ -214,7 +214,7 @@ impl Four {
         Four(_mm256_blendv_pd(_mm256_min_pd(b.0, a.0), b.0, unknown))
     }
 
-    /// The larger of two; the other one where one is not a number.
+    /// The larger of two; the other one if one is NaN.
     #[target_feature(enable = "avx")]
     #[inline]
     pub fn max(a: Self, b: Self) -> Self {
@@ -222,7 +222,7 @@ impl Four {
         Four(_mm256_blendv_pd(_mm256_max_pd(b.0, a.0), b.0, unknown))
     }
 
-    /// `a` where the test is above zero, else `b`.
+    /// `a` if the test is above zero, else `b`.
     #[target_feature(enable = "avx")]
     #[inline]
     pub fn choose(test: Self, a: Self, b: Self) -> Self {
@@ -267,7 +267,7 @@ impl Eight {
         Eight(_mm512_abs_pd(self.0))
     }
 
-    /// The smaller of two; the other one where one is not a number.
+    /// The smaller of two; the other one if one is NaN.
     #[target_feature(enable = "avx512f")]
     #[inline]
     pub fn min(a: Self, b: Self) -> Self {
@@ -275,7 +275,7 @@ impl Eight {
         Eight(_mm512_mask_blend_pd(unknown, _mm512_min_pd(b.0, a.0), b.0))
     }
 
-    /// The larger of two; the other one where one is not a number.
+    /// The larger of two; the other one if one is NaN.
     #[target_feature(enable = "avx512f")]
     #[inline]
     pub fn max(a: Self, b: Self) -> Self {
@@ -283,7 +283,7 @@ impl Eight {
         Eight(_mm512_mask_blend_pd(unknown, _mm512_max_pd(b.0, a.0), b.0))
     }
 
-    /// `a` where the test is above zero, else `b`.
+    /// `a` if the test is above zero, else `b`.
     #[target_feature(enable = "avx512f")]
     #[inline]
     pub fn choose(test: Self, a: Self, b: Self) -> Self {

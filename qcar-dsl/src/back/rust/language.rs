@@ -1,4 +1,4 @@
-//! How Rust writes an operation: on numbers, or on vectors of them.
+//! The syntax of Rust for operations on numbers, and on vectors of numbers.
 
 use crate::back::straight::{Language, Operator, usual_name};
 use crate::expr::Function;
@@ -44,7 +44,8 @@ impl Language for Numbers {
     }
 }
 
-/// On vectors: each operation is a function, since rustc inlines only functions that ask for the same instructions, and operators ask for none.
+/// Operations on vectors. Each is a function, since rustc inlines only functions that enable the same instructions, and operators
+/// enable none.
 pub struct Vectors;
 
 impl Language for Vectors {
@@ -96,7 +97,7 @@ impl Language for Vectors {
     }
 }
 
-/// What Rust calls a function.
+/// The name of a function in Rust.
 fn name(function: Function) -> &'static str {
     match function {
         Function::Ln => "ln",
@@ -104,10 +105,10 @@ fn name(function: Function) -> &'static str {
     }
 }
 
-/// How many points of a table stand on a line.
+/// Number of points of a table in one line.
 const ENTRIES: usize = 8;
 
-/// The arguments of a table, each row from a line of its own on.
+/// The arguments of a table; each row begins on a new line.
 fn points(order: u8, x: &str, rows: [Vec<String>; 3]) -> String {
     let row = |entries: Vec<String>| {
         let lines: Vec<String> = entries.chunks(ENTRIES).map(|line| line.join(", ")).collect();

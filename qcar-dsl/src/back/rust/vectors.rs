@@ -1,4 +1,4 @@
-//! The functions that are there over vectors, too, and what the runtime needs to call them.
+//! Functions that are also generated over vectors, and the types by which the runtime calls them.
 
 use qcar_model::About;
 
@@ -7,7 +7,7 @@ use crate::back::straight::{Function, Straight, response_name};
 use super::function::{Form, function, sets};
 use super::names::camel;
 
-/// The functions of several parameter sets, beside the responses.
+/// The functions of several parameter sets other than responses.
 const SETS: [&str; 6] = [
     "prepare",
     "derivative",
@@ -28,10 +28,10 @@ pub struct Vectors {
     pub types: String,
 }
 
-/// Those of several parameter sets and of lines of a response.
+/// The functions of several parameter sets and of lines of a response.
 ///
-/// A response to a force is there over four numbers alone: rustc would take a quarter longer for vectors of eight of all
-/// responses, and what is fitted again and again are those to a road.
+/// A response to a force is generated over four numbers only: with vectors of eight for all responses, rustc would take a quarter
+/// longer, and most fits use responses to a road.
 pub fn vectors(straight: &Straight, functions: &[Function], about: &About) -> Vectors {
     let mut vectors = Vectors::default();
     for own in functions {
@@ -47,7 +47,7 @@ pub fn vectors(straight: &Straight, functions: &[Function], about: &About) -> Ve
     vectors
 }
 
-/// How many outputs a response has, and whether it is to a road.
+/// Number of outputs of a response, and true if it is a response to a road; `None` for another function.
 fn response(about: &About, function: &Function) -> Option<(usize, bool)> {
     let mut responses = about.responses.iter().enumerate();
     let (place, layout) = responses.find(|(place, _)| {
@@ -107,7 +107,7 @@ impl Sets<{results}> for {type_name}<'_> {{
     )
 }
 
-/// What an argument is of several parameter sets.
+/// The type of an argument for several parameter sets.
 fn field(argument: &str) -> &'static str {
     match argument {
         "p" => "[seam::Lanes; PARAMETERS]",
@@ -119,7 +119,7 @@ fn field(argument: &str) -> &'static str {
     }
 }
 
-/// An argument of one of several parameter sets.
+/// The expression of an argument for one of several parameter sets.
 fn of_one(argument: &str) -> String {
     match argument {
         "contact" => "&self.contact.get(set)".into(),
