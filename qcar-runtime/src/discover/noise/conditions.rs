@@ -67,7 +67,7 @@ impl Nuisance {
     }
 
     /// Positions of the coefficients that set the true amplitude of an excitation. A suspected gain of a recorded input is
-    /// left out: beyond its calibration, the gain of an input is an effect of the model (`input_gain`).
+    /// left out: beyond its calibration, the gain of an input is an effect of the model.
     fn drive_gains(&self, run: &Run, reference: &Point) -> impl Iterator<Item = usize> {
         let is_record = matches!(run.stimulus, Stimulus::History { .. });
         let suspects = self.suspected(reference, Form::Gain(0)).filter(move |_| !is_record);
