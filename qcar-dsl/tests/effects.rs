@@ -449,3 +449,48 @@ fn an_effect_says_where_the_sensors_of_a_mass_stand() {
     let names: Vec<String> = nuisances.map(|own| own.effect().name.text.clone()).collect();
     assert_eq!(names, ["body_bending"]);
 }
+
+/// The mass that hangs is a share of the known mass of the body, which is five times its default.
+#[test]
+fn an_effect_is_sized_by_known_values_and_the_model_takes_them_as_defaults() {
+    let known = |name: &str| (name == "m_body").then_some(5.0);
+    let places = effect("suspended_mass").candidates(&model("one_mass"), &known);
+    let [own] = places.as_slice() else {
+        panic!("{} places", places.len())
+    };
+    let text = own.text("");
+    for line in ["param m_body: kg = 5 in 1e-9..1e6", "param m_pwt: kg = 1 in 0.05..3.5"] {
+        assert!(text.contains(line), "expected `{line}` in\n{text}");
+    }
+}
+
+/// Each point of a curve changes some motion, large or small. The shares of the travel at which the points lie are known parameters,
+/// and what a motion must be to reach them differs from model to model.
+#[test]
+fn every_point_of_a_curve_is_seen_in_every_model() {
+    for name in ["one_mass", "quarter_car", "axle_a", "axle_d", "axle_e"] {
+        let model = model(name);
+        for (law_name, place) in [
+            ("elastic_law", "spring"),
+            ("damping_law", "damper"),
+            ("position_damping_law", "damper"),
+        ] {
+            let patched = patched(&law(law_name), &model, place);
+            assert!(
+                patched.model.unseen().is_empty(),
+                "{law_name} in {name}: {:?}",
+                patched.model.unseen()
+            );
+        }
+    }
+}
+
+/// On a test rig without a road, a link may be a suspension as well as a mount.
+#[test]
+fn without_a_wheel_a_link_is_a_mount_too() {
+    let on_rig = model("linear_damper");
+    for name in ["hydraulic_mount", "bushing_relaxation", "segmented_polynomial_damper"] {
+        assert_eq!(effect(name).places(&on_rig), ["damper"], "{name}");
+    }
+    assert_eq!(effect("hydraulic_mount").places(&model("quarter_car")), [""; 0]);
+}

@@ -12,6 +12,7 @@ mod dynamometer;
 mod effects;
 mod explore;
 mod export;
+mod far_starts;
 mod fits;
 mod help;
 mod interruption;

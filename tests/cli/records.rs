@@ -9,7 +9,7 @@ use crate::common::{qcar, succeeds};
 
 /// Samples of every record, and their rate in Hz.
 const SAMPLES: usize = 2000;
-const RATE: f64 = 200.0;
+pub const RATE: f64 = 200.0;
 
 /// A mass of 2 kg on a spring of 800 N/m and a damper of 3 N s/m under a force, by steps far shorter than a sample.
 fn mass(begin: [f64; 2], force: impl Fn(f64) -> f64) -> Vec<f64> {
@@ -35,11 +35,11 @@ fn mass_for(count: usize, begin: [f64; 2], force: impl Fn(f64) -> f64) -> Vec<f6
 }
 
 /// Columns of a run, by the names of their channels.
-type Columns<'a> = &'a [(&'a str, Vec<f64>)];
+pub type Columns<'a> = &'a [(&'a str, Vec<f64>)];
 
 /// Writes a campaign of the shipped model of one mass: parameters and further keys of the runs as in `campaign.toml`, and
 /// a run for each set of columns, the last of them held out where there are several.
-fn campaign(folder: &Path, model: &str, parameters: &str, keys: &str, runs: &[Columns]) {
+pub fn campaign(folder: &Path, model: &str, parameters: &str, keys: &str, runs: &[Columns]) {
     let mut text = format!("format = 1\nname = \"c\"\nmodel = \"{model}\"\n\n{parameters}\n");
     for (name, location, quantity, unit) in [("push", "f", "force", "N"), ("z", "body", "displacement", "m")] {
         text += &format!(
@@ -67,7 +67,7 @@ fn campaign(folder: &Path, model: &str, parameters: &str, keys: &str, runs: &[Co
     fs::write(folder.join("campaign.toml"), text).unwrap();
 }
 
-fn parameter(name: &str, value: f64, unit: &str, range: &str) -> String {
+pub fn parameter(name: &str, value: f64, unit: &str, range: &str) -> String {
     format!("[parameters.{name}]\nvalue = {value:?}\nunit = \"{unit}\"\n{range}fit = true\n\n")
 }
 

@@ -25,7 +25,13 @@ pub struct Point<'a> {
     seed: u64,
     /// Seed of all leaves other than parameters, so that a parameter set can be tested in several motions.
     motion: u64,
+    /// Factor on the size of the motion.
+    size: f64,
 }
+
+/// Number of motions of the usual size. Later ones have a tenth of it up to a hundred times it, log-uniform: the pieces of a
+/// curve may lie anywhere.
+const OF_USUAL_SIZE: u64 = 4;
 
 impl<'a> Point<'a> {
     /// A point, determined by its number.
@@ -35,13 +41,20 @@ impl<'a> Point<'a> {
             kind,
             seed,
             motion: seed,
+            size: 1.0,
         }
     }
 
     /// The same parameters in another motion, specific to the parameter set.
     pub fn moved(self, motion: u64) -> Point<'a> {
+        let seed = (self.seed << 8) + motion;
+        let size = match motion {
+            0..OF_USUAL_SIZE => 1.0,
+            _ => 10.0_f64.powf(3.0 * uniform(seed, u64::MAX) - 1.0),
+        };
         Point {
-            motion: (self.seed << 8) + motion,
+            motion: seed,
+            size,
             ..self
         }
     }
@@ -52,7 +65,7 @@ impl<'a> Point<'a> {
             Symbol::Parameter(index) => self.parameter(index),
             _ => {
                 let scale = if self.kind == Kind::Plain { 2.0 } else { 0.1 };
-                scale * (2.0 * uniform(self.motion, tag(symbol)) - 1.0)
+                self.size * scale * (2.0 * uniform(self.motion, tag(symbol)) - 1.0)
             }
         }
     }

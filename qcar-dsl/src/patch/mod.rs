@@ -314,6 +314,7 @@ impl Patch {
         }
         let (parameters, declared): (Vec<NewParameter>, Vec<_>) =
             start::evaluate(base, &asked, values)?.into_iter().unzip();
+        start::set_known_defaults(&mut patching.tree, &asked, values);
         patching.declare_parameters(declared);
         let mut tree = patching.tree;
         tidy::tidy(&mut tree, base);

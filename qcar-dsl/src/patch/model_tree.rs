@@ -4,7 +4,7 @@ use super::rewrite;
 use crate::check::Checked;
 use crate::front::syntax::{
     Axle, AxleKind, Coordinate, CoordinateKind, Direction, Element, Expression, ExpressionKind, File, Item,
-    LawStatement, Link, Name, Operator, Statement,
+    LawStatement, Link, Name, Operator, Parameter, Statement,
 };
 
 /// The tree of a plain axle.
@@ -137,6 +137,18 @@ impl ModelTree {
         let inside = self.directions().flat_map(|direction| &direction.body);
         let all = self.axle.body.iter().chain(inside);
         all.filter(|statement| matches!(statement, Statement::Parameter(_) | Statement::Let(_)))
+    }
+
+    /// The parameters, to be changed.
+    pub fn parameters_mut(&mut self) -> impl Iterator<Item = &mut Parameter> {
+        let statements = self.axle.body.iter_mut().flat_map(|statement| match statement {
+            Statement::Direction(direction) => direction.body.iter_mut().collect(),
+            other => vec![other],
+        });
+        statements.filter_map(|statement| match statement {
+            Statement::Parameter(parameter) => Some(parameter),
+            _ => None,
+        })
     }
 
     /// The parameter or derived quantity of a name.

@@ -94,8 +94,13 @@ impl Roles {
     /// True if a link has a role.
     pub fn is_link(&self, direction: &str, link: &str, role: &str) -> bool {
         let own = self.links.get(&(direction.to_string(), link.to_string()));
-        // A hanger and the mount of a pivot are also mounts.
-        own.is_some_and(|own| *own == role || role == "mount" && ["hanger", "pivot_mount"].contains(own))
+        // A hanger and the mount of a pivot are also mounts. Without a wheel, nothing shows whether a link is a suspension or a mount.
+        let is_either = |own: &str| match role {
+            "mount" => ["hanger", "pivot_mount"].contains(&own) || self.wheel.is_none(),
+            "hanger" => self.wheel.is_none(),
+            _ => false,
+        };
+        own.is_some_and(|own| *own == role || is_either(own))
     }
 
     /// True if a mass has a role in the axle's own direction.

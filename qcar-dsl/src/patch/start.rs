@@ -75,6 +75,27 @@ pub fn evaluate(
     if found.is_empty() { Ok(all) } else { Err(found) }
 }
 
+/// Gives the parameters that these expressions use their known values as defaults: a mass that is taken from the body in a share
+/// of the known mass could exceed the body's default.
+pub fn set_known_defaults(tree: &mut ModelTree, asked: &[BoundParameter], values: Values) {
+    let mut used = Vec::new();
+    for e in asked.iter().flat_map(|one| &one.expressions) {
+        names_in(e, &mut |name| {
+            used.extend(name.names.iter().map(|part| part.text.clone()))
+        });
+    }
+    for parameter in tree.parameters_mut().filter(|own| used.contains(&own.name.text)) {
+        let inside = |value: &f64| {
+            let range = parameter.range.as_ref();
+            range.is_none_or(|(low, high)| low.value <= *value && *value <= high.value)
+        };
+        let known = values(&parameter.name.text).filter(inside);
+        if let Some(value) = known.filter(|_| parameter.default.is_some()) {
+            parameter.default = Some(ParameterDefault::Number(in_short(value)));
+        }
+    }
+}
+
 /// The model with each expression as a derived quantity, and with the parameters themselves for their units.
 fn with_expressions(base: &ModelTree, asked: &[BoundParameter]) -> (Model, Vec<Diagnostic>) {
     let mut quantities: Vec<Statement> = scales(asked).into_iter().map(Statement::Parameter).collect();
@@ -226,10 +247,15 @@ fn number(e: &Expression, value: f64) -> Number {
             value,
             ..number(inner, -value)
         },
-        _ => Number {
-            digits: format!("{value}"),
-            ..Number::new(value)
-        },
+        _ => in_short(value),
+    }
+}
+
+/// A number in its shortest form.
+fn in_short(value: f64) -> Number {
+    Number {
+        digits: format!("{value}"),
+        ..Number::new(value)
     }
 }
 

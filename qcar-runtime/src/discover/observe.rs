@@ -15,6 +15,8 @@ mod series;
 mod dataset;
 // Parts of a data set.
 mod views;
+// Records cut into short windows.
+mod windows;
 // Prediction of one series.
 mod prediction;
 // Swept sines: harmonics over frequency.

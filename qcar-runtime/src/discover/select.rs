@@ -2,12 +2,16 @@
 
 // Unknowns of an effect in a model.
 mod unknowns;
+// The data at three fidelities.
+mod fidelity;
 // Models with effects, ready to be fitted.
 pub mod assembly;
 // Score test of every candidate without a fit.
 mod screen;
 // Successive halving of the candidates.
 mod race;
+// Sets with one more effect.
+mod extend;
 // Multi-start fit of a model without effects.
 mod multi_start;
 // A set of effects with its fit.
@@ -37,20 +41,20 @@ use rayon::prelude::*;
 use assembly::{Assembly, Hypothesis, Place, Placed};
 use detection_limit::detection_limits;
 use exchange::exchanges;
+use extend::extensions;
+use fidelity::Fidelity;
 use first_law::FirstLaw;
 use held_out::supported_part;
 use probability::probabilities;
-use race::{Dropped, Fidelity, Finalist, entrants, race};
-use screen::screen;
 use set::{Set, best_base, excess, explained_share, is_missing, leaves_more_than_noise, most_probable};
 use verdict::conclude;
 
 pub use multi_start::{Minimum, MultiStart, fit_from_starts};
 
-use super::answer::{Discovery, Learned, Progress, Rival, Update, Verdict, rms_text};
-use super::candidate::{Candidate, Workshop};
+use super::answer::{Discovery, Learned, Progress, Update, Verdict, rms_text};
+use super::candidate::Workshop;
 use super::numbers::{EVEN, GREATER_PART, MOST_EFFECTS, Numbers};
-use super::observe::{Evidence, PredictError, Stimulus};
+use super::observe::{Evidence, PredictError};
 use super::posterior::{Explanation, Refit, Setting};
 use crate::campaign::Role;
 
@@ -116,7 +120,7 @@ pub fn discover(
     if discovery.verdict == Verdict::None {
         let refit = &base.explanation.refit;
         let steady = evidence.minus(&refit.unsteady).with_step_limit();
-        discovery.detection_limits = detection_limits(&base.assembly, refit, &fidelity(&steady).fine);
+        discovery.detection_limits = detection_limits(&base.assembly, refit, &Fidelity::of(&steady).fine);
     }
     Ok(discovery)
 }
@@ -241,7 +245,7 @@ const BASE: [(usize, usize); 3] = [(2, 10), (2, 10), (2, 20)];
 
 /// The fitted base model. Searches from several start points on coarse data and refines the best on finer data.
 fn fit_base(assembly: Assembly, evidence: &Evidence) -> Result<Set, PredictError> {
-    let fidelity = fidelity(evidence);
+    let fidelity = Fidelity::of(evidence);
     let hypothesis = assembly.hypothesis();
     let starts = SPREAD.par_iter().map(|&spread| {
         let from = Place {
@@ -286,97 +290,10 @@ fn setting_spread(assembly: &Assembly, spread: f64) -> std::collections::BTreeMa
     assembly.given().iter().enumerate().filter_map(moved).collect()
 }
 
-/// Fitted sets with one more effect. Empty if the set explains the data well and no candidate passes the screening, where
-/// its gain must exceed the false-alarm threshold and the `lead` of a learned law.
-fn extensions(set: &Set, lead: f64, evidence: &Evidence, progress: Progress<'_>) -> Vec<Set> {
-    let candidates = set.assembly.candidates();
-    progress(Update::Step(&format!(
-        "screening {} effects at their places",
-        candidates.len()
-    )));
-    let refit = &set.explanation.refit;
-    // One more effect hardly changes the non-steady part of a sweep response, so it is subtracted once.
-    let steady = evidence.minus(&refit.unsteady).with_step_limit();
-    let fidelity = fidelity(&steady);
-    let mut screened = screen(&set.assembly, &candidates, refit, &fidelity.coarse);
-    // A model with a large residual has poor parameters, which makes a first-order gain unreliable. So every candidate
-    // also starts from the given values, whatever its gain. Sets with effects have already been fitted from there.
-    let is_far_off = set.names().is_empty() && is_missing(set, evidence);
-    if is_far_off {
-        let given = Place::given(&fidelity.coarse);
-        for own in &mut screened {
-            own.start_from(&given, &set.assembly, &candidates[own.candidate]);
-        }
-    }
-    let least = (candidates.len() as f64 / evidence.numbers.false_alarms).ln();
-    // The screening uses every sixth line only, while the lead counts all lines.
-    let least = least.max(lead / DECIMATION[0] as f64);
-    let is_worth_fitting = |own: &screen::Screened| own.gain() > least;
-    if !is_far_off && !screened.iter().any(is_worth_fitting) {
-        return Vec::new();
-    }
-    let entering = entrants(&candidates, &screened);
-    let (finalists, dropped) = race(&set.assembly, &candidates, &entering, &fidelity, progress);
-    let of_finalist = |finalist: Finalist| {
-        let candidate = &candidates[finalist.candidate];
-        let hypothesis = set.assembly.hypothesis_with(candidate)?;
-        let explanation = finite_explanation(&hypothesis, finalist.refit, evidence)?;
-        // A nuisance effect has no prior odds against it, since every real car has some of it.
-        let prior = if candidate.nuisance {
-            set.log_prior
-        } else {
-            set.log_prior + log_prior(candidate, &candidates) + set.odds_of_another(&evidence.numbers).ln()
-        };
-        Some(Set::new(set.assembly.with(candidate)?, explanation, prior))
-    };
-    let mut sets: Vec<Set> = finalists.into_par_iter().filter_map(of_finalist).collect();
-    let rivals = rivals(&candidates, &dropped);
-    for own in &mut sets {
-        own.rivals.clone_from(&rivals);
-    }
-    sets
-}
-
 /// Explanation of all runs by a fit; `None` if the prediction fails or the evidence is not finite.
 fn finite_explanation(hypothesis: &Hypothesis<'_>, refit: Refit, evidence: &Evidence) -> Option<Explanation> {
     let explanation = hypothesis.explanation(refit, evidence).ok()?;
     explanation.refit.log_evidence.is_finite().then_some(explanation)
-}
-
-/// Number of dropped candidates in the report.
-const RIVALS: usize = 3;
-
-/// The best dropped candidates. Each effect and place appears once: forms of one effect are not rivals of each other.
-fn rivals(candidates: &[Candidate], dropped: &[Dropped]) -> Vec<Rival> {
-    let mut rivals: Vec<Rival> = Vec::new();
-    for left in dropped {
-        let own = rival(&candidates[left.candidate], left.behind);
-        let is_it = |known: &Rival| (&known.effect, &known.at) == (&own.effect, &own.at);
-        let is_answer = !candidates[left.candidate].nuisance && !rivals.iter().any(is_it);
-        if rivals.len() < RIVALS && is_answer {
-            rivals.push(own);
-        }
-    }
-    rivals
-}
-
-fn rival(candidate: &Candidate, behind: f64) -> Rival {
-    Rival {
-        effect: candidate.effect.clone(),
-        at: candidate.at.clone(),
-        behind: -behind,
-        early: true,
-    }
-}
-
-/// Log prior odds of a candidate: even odds that something is missing, shared equally among effects, and within an
-/// effect among its places and forms.
-fn log_prior(candidate: &Candidate, all: &[Candidate]) -> f64 {
-    let of_effect = all.iter().filter(|other| other.effect == candidate.effect).count();
-    let mut effects: Vec<&str> = all.iter().map(|other| other.effect.as_str()).collect();
-    effects.sort_unstable();
-    effects.dedup();
-    -((effects.len() * of_effect) as f64).ln()
 }
 
 /// Refits the set without each of its effects in turn, the last one included. From this start the remaining effects may
@@ -403,30 +320,4 @@ fn without(left_out: usize, set: &Set, base: &Set, evidence: &Evidence) -> Optio
     let explanation = finite_explanation(&hypothesis, refit, evidence)?;
     let share = set.log_prior * others.len() as f64 / effects.len() as f64;
     Some(Set::new(assembly, explanation, share))
-}
-
-/// Line decimation of sweeps in the coarse and the medium data.
-const DECIMATION: [usize; 2] = [6, 3];
-
-/// The data at each fidelity. The coarse and the medium data keep only the cleat run with the highest obstacle, since
-/// the simulation of a cleat run takes as long as that of many sweeps.
-fn fidelity(evidence: &Evidence) -> Fidelity {
-    let mut rides: Vec<usize> = (0..evidence.runs.len())
-        .filter(|&run| evidence.runs[run].role == Role::Fit && is_ride(&evidence.runs[run].stimulus))
-        .collect();
-    rides.sort_by(|&a, &b| evidence.runs[b].level.total_cmp(&evidence.runs[a].level));
-    let keep = |run: usize| {
-        let own = &evidence.runs[run];
-        own.role == Role::Fit && (!is_ride(&own.stimulus) || rides.first() == Some(&run))
-    };
-    let few = evidence.only(keep);
-    Fidelity {
-        coarse: few.thinned(DECIMATION[0]),
-        medium: few.thinned(DECIMATION[1]),
-        fine: evidence.only(|run| evidence.runs[run].role == Role::Fit),
-    }
-}
-
-fn is_ride(stimulus: &Stimulus) -> bool {
-    matches!(stimulus, Stimulus::Cleat(_))
 }

@@ -48,7 +48,7 @@ impl Evidence {
 fn length(stimulus: &Stimulus) -> f64 {
     match stimulus {
         Stimulus::Sweep { time, .. } => time.iter().copied().fold(0.0, f64::max),
-        Stimulus::History { inputs, rate, .. } => inputs.samples as f64 / rate,
+        Stimulus::History { inputs, .. } => inputs.whole.end - inputs.whole.start,
         Stimulus::Cleat(passage) => passage.duration,
         Stimulus::Travel { .. } | Stimulus::Sine { .. } | Stimulus::Dynamometer { .. } => 0.0,
     }
@@ -64,7 +64,7 @@ fn moments(series: &Series, run: &Run) -> Vec<f64> {
         _ => 0.0,
     };
     let start = match &run.stimulus {
-        Stimulus::History { inputs, .. } => inputs.start,
+        Stimulus::History { inputs, .. } => inputs.whole.start,
         _ => 0.0,
     };
     match series.kind {

@@ -15,6 +15,7 @@ pub use passage::Passage;
 pub(super) use passage::{COARSE_POINTS, FINE_POINTS, SEARCH_STEP_LIMIT, STEP_LIMIT};
 pub use restart::{Restart, Spread, measures};
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use crate::campaign::{Axis, Role};
@@ -113,6 +114,8 @@ pub struct Recordings {
     pub start: f64,
     /// Number of samples.
     pub samples: usize,
+    /// Times of the whole record, of which this may be a part, s.
+    pub whole: Range<f64>,
     /// Sensors with their samples.
     pub signals: Vec<(Point, Vec<f64>)>,
 }

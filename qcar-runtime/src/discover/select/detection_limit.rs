@@ -6,7 +6,7 @@
 use rayon::prelude::*;
 
 use super::assembly::Assembly;
-use super::log_prior;
+use super::extend::log_prior;
 use super::screen::{Point, Tangent};
 use crate::discover::answer::DetectionLimit;
 use crate::discover::candidate::Candidate;

@@ -7,6 +7,7 @@
 use rayon::prelude::*;
 
 use super::assembly::Placed;
+use super::fidelity::Fidelity;
 use super::finite_explanation;
 use super::set::Set;
 use crate::discover::observe::Evidence;
@@ -67,7 +68,7 @@ fn exchanged(set: &Set, chosen: &Set, rival: &Set, sets: &[Set], evidence: &Evid
     }
     from.discrepancy = there.discrepancy;
     let steady = evidence.minus(&rival.explanation.refit.unsteady).with_step_limit();
-    let refit = hypothesis.fit(&from, &super::fidelity(&steady).fine, (2, 15)).ok()?;
+    let refit = hypothesis.fit(&from, &Fidelity::of(&steady).fine, (2, 15)).ok()?;
     let explanation = finite_explanation(&hypothesis, refit, evidence)?;
     let prior = rival.log_prior + set.log_prior - chosen.log_prior;
     Some(Set::new(assembly, explanation, prior))

@@ -1,6 +1,6 @@
 //! Checks sets on the held-out runs, which no fit and no choice has used.
 
-use super::set::{Set, explained_share, is_part, most_probable};
+use super::set::{Set, excess, explained_share, is_part, most_probable};
 use crate::campaign::Role;
 use crate::discover::observe::Evidence;
 
@@ -15,7 +15,10 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
         let is_answer = |other: &usize| is_less(other) && !sets[*other].has_magnitude_at_bound();
         let withdrawn = |&part: &usize| {
             let explained = explained_share(&sets[part].explanation, &sets[best].explanation, evidence);
-            let changes_little = !sets[part].names().is_empty() && explained < evidence.numbers.explained();
+            // If the part leaves no more than noise, there is nothing to explain.
+            let is_enough = excess(&sets[part].explanation, evidence) <= 0.0;
+            let explains_little = is_enough || explained < evidence.numbers.explained();
+            let changes_little = !sets[part].names().is_empty() && explains_little;
             let fails = has_held_out && (changes_little || !predicts_better(&sets[best], &sets[part], evidence));
             fails || sets[best].adds_effect_at_bound(&sets[part])
         };

@@ -4,12 +4,14 @@
 use rayon::prelude::*;
 
 use super::assembly::Placed;
+use super::extend::{Start, explains_fitted};
 use super::held_out::predicts_better;
 use super::race::{Finalist, race};
 use super::screen::Screened;
 use super::set::{Set, explained_share, is_missing};
-use super::{Progress, Update, fidelity, finite_explanation};
+use super::{Progress, Update, finite_explanation};
 use crate::discover::answer::{Finding, Learned};
+use crate::discover::candidate::Candidate;
 use crate::discover::observe::Evidence;
 
 /// Most laws that are learned together, for example one in travel and one in speed.
@@ -51,23 +53,34 @@ pub fn is_supported(learned: &Set, base: &Set, evidence: &Evidence) -> bool {
 pub fn with_law(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Option<Set> {
     let laws = set.assembly.laws();
     progress(Update::Step(&format!("learning a law at {} places", laws.len())));
-    let refit = &set.explanation.refit;
-    let here = set.assembly.hypothesis().place(refit);
+    let steady = evidence.minus(&set.explanation.refit.unsteady).with_step_limit();
+    let law = most_probable_law(set, &laws, &Start::of(set, &steady), evidence, progress);
+    if !is_missing(set, evidence) || law.as_ref().is_some_and(|law| explains_fitted(set, law, evidence)) {
+        return law;
+    }
+    let in_windows =
+        Start::in_windows(set, &steady).and_then(|start| most_probable_law(set, &laws, &start, evidence, progress));
+    let both = law.into_iter().chain(in_windows);
+    both.max_by(|a, b| a.log_posterior().total_cmp(&b.log_posterior()))
+}
+
+fn most_probable_law(
+    set: &Set,
+    laws: &[Candidate],
+    start: &Start,
+    evidence: &Evidence,
+    progress: Progress<'_>,
+) -> Option<Set> {
+    let here = set.assembly.hypothesis().place(&start.refit);
     // At its start values a law changes the model little, so a screening could not rank the laws.
-    let start = |candidate: usize| Screened {
+    let unchanged = |candidate: usize| Screened {
         candidate,
         starts: vec![(here.clone(), 0.0)],
         unscreened: None,
     };
-    let all: Vec<Screened> = (0..laws.len()).map(start).collect();
-    let steady = evidence.minus(&refit.unsteady).with_step_limit();
-    let (finalists, _) = race(
-        &set.assembly,
-        &laws,
-        &all.iter().collect::<Vec<_>>(),
-        &fidelity(&steady),
-        progress,
-    );
+    let all: Vec<Screened> = (0..laws.len()).map(unchanged).collect();
+    let entering: Vec<&Screened> = all.iter().collect();
+    let (finalists, _) = race(&set.assembly, laws, &entering, &start.fidelity, progress);
     let prior = set.log_prior - (laws.len() as f64).ln() + set.odds_of_another(&evidence.numbers).ln();
     let fitted = finalists.into_par_iter().filter_map(|Finalist { candidate, refit }| {
         let candidate = &laws[candidate];

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use super::assembly::{Assembly, Hypothesis, Place};
-use super::{fidelity, race::Fidelity};
+use super::fidelity::Fidelity;
 use crate::campaign::Role;
 use crate::discover::answer::{Progress, Update};
 use crate::discover::candidate::Workshop;
@@ -54,14 +54,14 @@ pub fn fit_from_starts(
         return Err(PredictError::NothingToFit);
     }
     let assembly = Assembly::base(workshop.into(), setting, evidence)?;
-    let (hypothesis, fidelity) = (assembly.hypothesis(), fidelity(evidence));
+    let (hypothesis, fidelity) = (assembly.hypothesis(), Fidelity::of(evidence));
     progress(Update::Step(&format!("searching from {count} starts")));
     let minima = minima(&hypothesis, spread(assembly.given(), count), &fidelity)?;
     progress(Update::Step("refining the best fit"));
     let best = hypothesis.fit(&hypothesis.place(&minima[0]), &fidelity.fine, SEARCHES[2])?;
     let with_unsteady = hypothesis.explanation(best, evidence)?.refit;
     // Subtract the non-steady part of the sweeps from the measurement; the fit compares steady harmonics only.
-    let steady = super::fidelity(&evidence.minus(&with_unsteady.unsteady)).fine;
+    let steady = Fidelity::of(&evidence.minus(&with_unsteady.unsteady)).fine;
     let refit = hypothesis.fit(&hypothesis.place(&with_unsteady), &steady, FINAL)?;
     let other = |other: &Refit| Minimum {
         log_odds: minima[0].log_evidence - other.log_evidence,

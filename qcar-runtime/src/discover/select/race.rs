@@ -8,21 +8,12 @@ use std::collections::{BTreeMap, HashSet};
 use rayon::prelude::*;
 
 use super::assembly::{Assembly, Hypothesis, Place};
+use super::fidelity::Fidelity;
 use super::screen::Screened;
 use super::{BEAM, Progress, Update};
 use crate::discover::candidate::Candidate;
 use crate::discover::observe::Evidence;
 use crate::discover::posterior::Refit;
-
-/// The data at three fidelities, for the rounds of successive halving.
-pub struct Fidelity {
-    /// Decimated sweep lines and one cleat run.
-    pub coarse: Evidence,
-    /// More sweep lines and the same cleat run.
-    pub medium: Evidence,
-    /// All fitted runs.
-    pub fine: Evidence,
-}
 
 /// One round of successive halving.
 struct Round {
@@ -69,9 +60,9 @@ const WITH_ALL_STARTS: usize = 9;
 const NOT_SEPARATED: f64 = 10.0;
 /// Number of candidates with the largest gain that enter, whatever their place and form.
 const ENTRANTS: usize = 6;
-/// Factor on the number of evaluations of a linear model, which are cheap. Without it, a light mass on mounts would be
-/// dropped before the fit finds its mode.
-const LINEAR_FACTOR: usize = 3;
+/// Factor on the number of evaluations that are cheap: those of a linear model, and of records in windows. Without it, a light mass on
+/// mounts would be dropped before the fit finds its mode.
+const CHEAP_FACTOR: usize = 3;
 
 /// A candidate after its fit to all fitted runs.
 pub struct Finalist {
@@ -140,12 +131,12 @@ pub fn race(
     let mut dropped = Vec::new();
     for (number, round) in ROUNDS.iter().enumerate() {
         progress(Update::Done(number, ROUNDS.len()));
-        let data = (round.evidence)(fidelity);
+        let last = number + 1 == ROUNDS.len();
+        let is_cut = fidelity.has_windows && !last;
         field = field
             .into_par_iter()
-            .filter_map(|runner| run(runner, data, round))
+            .filter_map(|runner| run(runner, (round.evidence)(fidelity), round, is_cut))
             .collect();
-        let last = number + 1 == ROUNDS.len();
         let (stay, left) = best(field, candidates, round, number > 0);
         field = stay;
         if !last {
@@ -176,10 +167,11 @@ pub fn entrants<'p>(candidates: &[Candidate], screened: &'p [Screened]) -> Vec<&
     entering.map(|(_, entry)| entry).collect()
 }
 
-fn run<'a>(mut runner: Runner<'a>, evidence: &Evidence, round: &Round) -> Option<Runner<'a>> {
+/// Fits a runner; `is_cut` tells that the records are in windows.
+fn run<'a>(mut runner: Runner<'a>, evidence: &Evidence, round: &Round, is_cut: bool) -> Option<Runner<'a>> {
     let (rounds, evaluations) = round.budget;
-    let times = if runner.hypothesis.model().about().linear {
-        LINEAR_FACTOR
+    let times = if runner.hypothesis.model().about().linear || is_cut {
+        CHEAP_FACTOR
     } else {
         1
     };

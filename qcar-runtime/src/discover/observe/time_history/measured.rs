@@ -99,6 +99,7 @@ impl Evidence {
                 inputs: Recordings {
                     start: history.start,
                     samples: history.len(),
+                    whole: history.start..history.start + history.len() as f64 / rate,
                     signals,
                 },
                 rate,

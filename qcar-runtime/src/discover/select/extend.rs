@@ -1,0 +1,152 @@
+//! Extends a set by one more effect.
+
+use rayon::prelude::*;
+
+use super::assembly::Place;
+use super::fidelity::{DECIMATION, Fidelity};
+use super::finite_explanation;
+use super::race::{Dropped, Finalist, entrants, race};
+use super::screen::{Screened, screen};
+use super::set::{Set, is_missing};
+use super::{BASE, Progress, Update};
+use crate::discover::answer::Rival;
+use crate::discover::candidate::Candidate;
+use crate::discover::observe::Evidence;
+use crate::discover::posterior::Refit;
+
+/// Fitted sets with one more effect. Empty if the set explains the data well and no candidate passes the screening, where
+/// its gain must exceed the false-alarm threshold and the `lead` of a learned law.
+pub fn extensions(set: &Set, lead: f64, evidence: &Evidence, progress: Progress<'_>) -> Vec<Set> {
+    let candidates = set.assembly.candidates();
+    progress(Update::Step(&format!(
+        "screening {} effects at their places",
+        candidates.len()
+    )));
+    // One more effect hardly changes the non-steady part of a sweep response, so it is subtracted once.
+    let steady = evidence.minus(&set.explanation.refit.unsteady).with_step_limit();
+    let mut sets = extended(set, &candidates, &Start::of(set, &steady), lead, evidence, progress);
+    if is_missing(set, evidence)
+        && sets.iter().all(|own| !explains_fitted(set, own, evidence))
+        && let Some(start) = Start::in_windows(set, &steady)
+    {
+        progress(Update::Step("screening in short windows of the records"));
+        sets.extend(extended(set, &candidates, &start, lead, evidence, progress));
+    }
+    sets
+}
+
+/// True if `after` explains nearly all of the excess residual that `before` leaves in the fitted runs.
+pub fn explains_fitted(before: &Set, after: &Set, evidence: &Evidence) -> bool {
+    let [before, after] = [before, after].map(|set| (set.explanation.misfit.fit.powi(2) - 1.0).max(0.0));
+    after <= evidence.numbers.doubt * before
+}
+
+/// Data of a search that starts from a set, and the fit of the set to the coarse part.
+pub struct Start {
+    pub fidelity: Fidelity,
+    pub refit: Refit,
+}
+
+impl Start {
+    /// For a set that is nearly right.
+    pub fn of(set: &Set, steady: &Evidence) -> Self {
+        Self {
+            fidelity: Fidelity::of(steady),
+            refit: set.explanation.refit.clone(),
+        }
+    }
+
+    /// For a set that leaves much: then a simulation of whole records says little about what is missing. `None` without
+    /// records that can be cut into windows.
+    pub fn in_windows(set: &Set, steady: &Evidence) -> Option<Self> {
+        let fidelity = Fidelity::in_windows(steady)?;
+        let hypothesis = set.assembly.hypothesis();
+        let from = hypothesis.place(&set.explanation.refit);
+        let refit = hypothesis.fit(&from, &fidelity.coarse, BASE[0]).ok()?;
+        Some(Self { fidelity, refit })
+    }
+}
+
+fn extended(
+    set: &Set,
+    candidates: &[Candidate],
+    start: &Start,
+    lead: f64,
+    evidence: &Evidence,
+    progress: Progress<'_>,
+) -> Vec<Set> {
+    let Start { fidelity, refit } = start;
+    let mut screened = screen(&set.assembly, candidates, refit, &fidelity.coarse);
+    // A model with a large residual has poor parameters, which makes a first-order gain unreliable. So every candidate
+    // also starts from the given values, whatever its gain. Sets with effects have already been fitted from there.
+    let is_far_off = set.names().is_empty() && is_missing(set, evidence);
+    if is_far_off {
+        let given = Place::given(&fidelity.coarse);
+        for own in &mut screened {
+            own.start_from(&given, &set.assembly, &candidates[own.candidate]);
+        }
+    }
+    let least = (candidates.len() as f64 / evidence.numbers.false_alarms).ln();
+    // The screening uses every sixth line only, while the lead counts all lines.
+    let least = least.max(lead / DECIMATION[0] as f64);
+    let is_worth_fitting = |own: &Screened| own.gain() > least;
+    if !is_far_off && !screened.iter().any(is_worth_fitting) {
+        return Vec::new();
+    }
+    let entering = entrants(candidates, &screened);
+    let (finalists, dropped) = race(&set.assembly, candidates, &entering, fidelity, progress);
+    let of_finalist = |finalist: Finalist| {
+        let candidate = &candidates[finalist.candidate];
+        let hypothesis = set.assembly.hypothesis_with(candidate)?;
+        let explanation = finite_explanation(&hypothesis, finalist.refit, evidence)?;
+        // A nuisance effect has no prior odds against it, since every real car has some of it.
+        let prior = if candidate.nuisance {
+            set.log_prior
+        } else {
+            set.log_prior + log_prior(candidate, candidates) + set.odds_of_another(&evidence.numbers).ln()
+        };
+        Some(Set::new(set.assembly.with(candidate)?, explanation, prior))
+    };
+    let mut sets: Vec<Set> = finalists.into_par_iter().filter_map(of_finalist).collect();
+    let rivals = rivals(candidates, &dropped);
+    for own in &mut sets {
+        own.rivals.clone_from(&rivals);
+    }
+    sets
+}
+
+/// Number of dropped candidates in the report.
+const RIVALS: usize = 3;
+
+/// The best dropped candidates. Each effect and place appears once: forms of one effect are not rivals of each other.
+fn rivals(candidates: &[Candidate], dropped: &[Dropped]) -> Vec<Rival> {
+    let mut rivals: Vec<Rival> = Vec::new();
+    for left in dropped {
+        let own = rival(&candidates[left.candidate], left.behind);
+        let is_it = |known: &Rival| (&known.effect, &known.at) == (&own.effect, &own.at);
+        let is_answer = !candidates[left.candidate].nuisance && !rivals.iter().any(is_it);
+        if rivals.len() < RIVALS && is_answer {
+            rivals.push(own);
+        }
+    }
+    rivals
+}
+
+fn rival(candidate: &Candidate, behind: f64) -> Rival {
+    Rival {
+        effect: candidate.effect.clone(),
+        at: candidate.at.clone(),
+        behind: -behind,
+        early: true,
+    }
+}
+
+/// Log prior odds of a candidate: even odds that something is missing, shared equally among effects, and within an
+/// effect among its places and forms.
+pub fn log_prior(candidate: &Candidate, all: &[Candidate]) -> f64 {
+    let of_effect = all.iter().filter(|other| other.effect == candidate.effect).count();
+    let mut effects: Vec<&str> = all.iter().map(|other| other.effect.as_str()).collect();
+    effects.sort_unstable();
+    effects.dedup();
+    -((effects.len() * of_effect) as f64).ln()
+}
