@@ -54,7 +54,7 @@ pub use multi_start::{Minimum, MultiStart, fit_from_starts};
 use super::answer::{Discovery, Learned, Progress, Update, Verdict, rms_text};
 use super::candidate::Workshop;
 use super::numbers::{EVEN, GREATER_PART, MOST_EFFECTS, Numbers};
-use super::observe::{Evidence, PredictError};
+use super::observe::{Evidence, PredictError, Run, Stimulus};
 use super::posterior::{Explanation, Refit, Setting};
 use crate::campaign::Role;
 
@@ -79,7 +79,8 @@ pub fn discover(
     progress(Update::Interim(&text, &[], &base.explanation));
     let mut sets = vec![base];
     let mut law = FirstLaw::default();
-    while let Some(place) = next(&sets, evidence) {
+    let lacks_nothing = lacks_nothing(&sets[0], evidence);
+    while let Some(place) = next(&sets, evidence).filter(|_| !lacks_nothing) {
         sets[place].extended = true;
         let lead = law.lead(&sets, place, evidence, progress);
         let more = extensions(&sets[place], lead, evidence, progress);
@@ -123,6 +124,14 @@ pub fn discover(
         discovery.detection_limits = detection_limits(&base.assembly, refit, &Fidelity::of(&steady).fine);
     }
     Ok(discovery)
+}
+
+/// True if a model of records alone leaves no more than noise in any run. The uncertainty of a record includes half a percent of the
+/// response, as the smallest error of any model, and what an effect gains below that comes from noise in the recorded inputs, hum, or drift.
+fn lacks_nothing(base: &Set, evidence: &Evidence) -> bool {
+    let is_record = |run: &Run| matches!(run.stimulus, Stimulus::History { .. });
+    let leaves_noise = !leaves_more_than_noise(base, evidence) && excess(&base.explanation, evidence) <= 0.0;
+    evidence.runs.iter().all(is_record) && leaves_noise
 }
 
 /// True if the held-out runs support only a part of the set and this part explains most of the excess residual.
