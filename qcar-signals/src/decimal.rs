@@ -16,6 +16,7 @@ const MOST_DIGITS: usize = 19;
 /// `point` is the decimal sign, and an exponent follows one of the letters in `exponents`.
 ///
 /// Source: Clinger, "How to read floating point numbers accurately", 1990, section 3.
+#[inline]
 pub(crate) fn exact(text: &[u8], point: u8, exponents: &[u8]) -> Option<f64> {
     let (negative, text) = signed(text.trim_ascii());
     let (whole, mut rest) = digits(text, 0)?;

@@ -375,24 +375,26 @@ impl Function {
         let width = if self.double { 20 } else { 13 };
         let imaginary = self.complex.then_some(width);
         let of_a_sample = [(!self.even).then_some(13), Some(width), imaginary];
-        let widths: Vec<usize> = of_a_sample.into_iter().flatten().collect();
+        let numbers = of_a_sample.iter().flatten().count();
+        let mut widths = of_a_sample.into_iter().flatten().cycle();
         let mut all = Vec::with_capacity((content.bytes.len() - content.at) / 13);
         for line in content {
             let (mut from, end) = (0, line.bytes.trim_ascii_end().len());
-            while from < end {
-                let to = from + widths[all.len() % widths.len()];
-                all.push(number(line, from, to, "a number")?);
-                from = to;
+            while from < end
+                && let Some(width) = widths.next()
+            {
+                all.push(number(line, from, from + width, "a number")?);
+                from += width;
             }
         }
-        if all.len() as u64 != self.count.saturating_mul(widths.len() as u64) {
+        if all.len() as u64 != self.count.saturating_mul(numbers as u64) {
             let found = format!("{} numbers", all.len());
             return Err(Fault::damaged(place, found, format!("{} samples", self.count)));
         }
-        if widths.len() == 1 {
+        if numbers == 1 {
             return Ok((None, all));
         }
-        let every = |from: usize| all.iter().skip(from).step_by(widths.len()).copied().collect();
+        let every = |from: usize| all.iter().skip(from).step_by(numbers).copied().collect();
         let times = (!self.even).then(|| every(0));
         Ok((times, every(usize::from(!self.even))))
     }

@@ -44,7 +44,7 @@ fn block(file: &mut Vec<u8>, id: &[u8; 2], data: &[u8]) -> u32 {
 fn channels(file: &mut Vec<u8>, group: &Group) -> u32 {
     let values = group.channels.iter().map(|channel| (&*channel.name, &*channel.unit));
     let all: Vec<(&str, &str)> = std::iter::once(("Time", "s")).chain(values).collect();
-    let mut next = 0;
+    let mut next: u32 = 0;
     for (place, (name, unit)) in all.into_iter().enumerate().rev() {
         let unit = conversion(file, unit);
         let mut facts = [0; 224];
