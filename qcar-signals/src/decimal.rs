@@ -19,37 +19,33 @@ const MOST_DIGITS: usize = 19;
 #[inline]
 pub(crate) fn exact(text: &[u8], point: u8, exponents: &[u8]) -> Option<f64> {
     let (negative, text) = signed(text.trim_ascii());
-    let (whole, mut rest) = digits(text, 0)?;
+    let (mut mantissa, mut rest) = digits(text, 0)?;
     let mut count = text.len() - rest.len();
-    let mut mantissa = whole;
     let mut power = 0;
     if let [sign, fraction @ ..] = rest
         && *sign == point
     {
-        (mantissa, rest) = digits(fraction, whole)?;
+        (mantissa, rest) = digits(fraction, mantissa)?;
         let places = fraction.len() - rest.len();
         count += places;
-        power = -(places as i32);
+        power -= places as i64;
     }
     if let [letter, exponent @ ..] = rest
         && exponents.contains(letter)
     {
-        let (negative, exponent) = signed(exponent);
+        let (falls, exponent) = signed(exponent);
         let (size, beyond) = digits(exponent, 0)?;
-        if exponent.is_empty() || !beyond.is_empty() || size > 2 * MOST_DIGITS as u64 {
-            return None;
-        }
-        power += if negative { -(size as i32) } else { size as i32 };
+        let size = u32::try_from(size).ok().filter(|_| !exponent.is_empty())?;
+        power += i64::from(size) * if falls { -1 } else { 1 };
         rest = beyond;
     }
     if !rest.is_empty() || !(1..=MOST_DIGITS).contains(&count) || mantissa > LARGEST {
         return None;
     }
     let factor = POWERS.get(power.unsigned_abs() as usize)?;
-    let size = if power < 0 {
-        mantissa as f64 / factor
-    } else {
-        mantissa as f64 * factor
+    let size = match power < 0 {
+        true => mantissa as f64 / factor,
+        false => mantissa as f64 * factor,
     };
     Some(if negative { -size } else { size })
 }
