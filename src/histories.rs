@@ -5,7 +5,7 @@ use std::path::Path;
 
 use clap::ValueEnum;
 use qcar_runtime::error::InputError;
-use qcar_signals::mat::write::{Array, v5};
+use qcar_signals::mat::write::{Array, v5, v73};
 use qcar_signals::mdf::write::{Channel, Group, v4};
 
 use crate::files::put;
@@ -18,6 +18,9 @@ pub enum Kind {
     Csv,
     /// MAT version 5: a structure with X (time) and Y, each with Name, Unit and Data
     Mat,
+    /// The same in MAT version 7.3 (HDF5), where Y is a cell array
+    #[value(name = "mat73")]
+    Mat73,
     /// MDF 4.10, uncompressed: one group with the time of the run
     Mdf,
 }
@@ -40,7 +43,12 @@ impl History {
     pub fn put(&self, folder: &Path, kind: Kind) -> Result<(), InputError> {
         match kind {
             Kind::Csv => put(folder, &format!("{}.csv", self.name), &self.csv()),
-            Kind::Mat => put(folder, &format!("{}.mat", self.name), &self.mat()),
+            Kind::Mat => put(
+                folder,
+                &format!("{}.mat", self.name),
+                &self.mat(|run| v5("a run simulated by qcar", run)),
+            ),
+            Kind::Mat73 => put(folder, &format!("{}.mat", self.name), &self.mat(v73)),
             Kind::Mdf => put(folder, &format!("{}.mf4", self.name), &self.mdf()),
         }
     }
@@ -63,7 +71,7 @@ impl History {
     }
 
     /// A capture as dSPACE writes it, which most viewers recognise as time histories with units.
-    fn mat(&self) -> Vec<u8> {
+    fn mat(&self, write: impl FnOnce(&[(String, Array)]) -> Result<Vec<u8>, String>) -> Vec<u8> {
         let fields = || ["Name", "Unit", "Data", "XIndex"].map(String::from).to_vec();
         let element = |name: &str, unit: &str, samples: &[f64]| {
             let data = Array::column(samples.to_vec());
@@ -83,8 +91,7 @@ impl History {
             ("X".into(), Array::Structs(fields(), time)),
             ("Y".into(), Array::Structs(fields(), channels)),
         ]);
-        v5("a run simulated by qcar", &[(self.name.clone(), capture)])
-            .expect("one variable, and fields of different names")
+        write(&[(self.name.clone(), capture)]).expect("one variable, and fields of different names")
     }
 
     fn mdf(&self) -> Vec<u8> {

@@ -1,7 +1,7 @@
 //! Measured files of 64 MB of samples in memory: read into channels, of which every sample is then requested once as a double.
 //!
-//! The rate is that of the samples as the file stores them (two bytes for short integers, eight for doubles), without times, names and
-//! padding. A number in a text has no width of its own: text has the rate of the whole file.
+//! The rate is that of the samples as the file stores them (two bytes for short integers, eight for doubles and for numbers of a text),
+//! without times, names and padding.
 
 #[path = "../../tests/rig_files/writers/mod.rs"]
 #[expect(dead_code, reason = "texts and workbooks are written by tests alone")]
@@ -36,30 +36,42 @@ fn group(width: usize) -> Group {
 }
 
 const SHORT: usize = 2;
+const SINGLE: usize = 4;
 const DOUBLE: usize = 8;
 
 /// A format, and what writes a file of it.
 type Format = (&'static str, fn() -> Vec<u8>);
 
-const BINARY: [Format; 5] = [
+const BINARY: [Format; 8] = [
     ("mat_5", || writers::mat5::file(&group(DOUBLE))),
+    ("mat_7_3", || writers::mat73::file(&group(DOUBLE))),
+    ("mdf_3", || writers::mdf3::file(&group(DOUBLE))),
     ("mdf_4", || writers::mdf4::file(&[group(DOUBLE)])),
-    ("rpc_3", || writers::rpc::file(&group(SHORT))),
+    ("rpc_3_short", || writers::rpc::file(&group(SHORT))),
+    ("rpc_3_float", || writers::rpc::floats(&group(SINGLE))),
     ("tdms", || writers::tdms::file(&group(DOUBLE))),
     ("uff_58b", || writers::uff::binary(&group(DOUBLE))),
 ];
 
 #[divan::bench(sample_count = 10, args = BINARY.map(|(name, _)| name))]
 fn binary(bencher: Bencher<'_, '_>, name: &str) {
-    let of_name = BINARY.iter().find(|(own, _)| *own == name);
-    let file = of_name.expect("it is one of them").1();
-    bencher.counter(BytesCount::new(BYTES)).bench_local(|| sum(&file));
+    measure(bencher, &BINARY, name);
 }
 
-#[divan::bench(sample_count = 10)]
-fn uff_58_text(bencher: Bencher<'_, '_>) {
-    let file = writers::uff::file(&group(DOUBLE));
-    bencher.counter(BytesCount::new(file.len())).bench_local(|| sum(&file));
+const TEXT: [Format; 2] = [
+    ("uff_58", || writers::uff::file(&group(DOUBLE))),
+    ("csv", || writers::tables::text(&group(DOUBLE))),
+];
+
+#[divan::bench(sample_count = 10, args = TEXT.map(|(name, _)| name))]
+fn text(bencher: Bencher<'_, '_>, name: &str) {
+    measure(bencher, &TEXT, name);
+}
+
+fn measure(bencher: Bencher<'_, '_>, formats: &[Format], name: &str) {
+    let of_name = formats.iter().find(|(own, _)| *own == name);
+    let file = of_name.expect("it is one of them").1();
+    bencher.counter(BytesCount::new(BYTES)).bench_local(|| sum(&file));
 }
 
 /// Of all samples of all channels.

@@ -4,6 +4,7 @@
 use csv::{ReaderBuilder, StringRecord, Trim};
 
 use crate::bytes::text;
+use crate::decimal;
 use crate::error::{Fault, Place, Read};
 use crate::signal::Recording;
 use crate::table::{Cell, Column, Filled, Layout};
@@ -211,6 +212,10 @@ impl Decimals {
 
     /// The number in a cell, NaN for a missing one; `None` if the cell contains anything else.
     fn number(self, cell: &str) -> Option<f64> {
+        let (decimal, thousands) = self.signs();
+        if let Some(number) = decimal::exact(cell.as_bytes(), decimal as u8, b"eE") {
+            return Some(number);
+        }
         let cell = cell.trim();
         if is_missing(cell) {
             return Some(f64::NAN);
@@ -218,10 +223,6 @@ impl Decimals {
         if !looks_like_a_number(cell) {
             return None;
         }
-        let (decimal, thousands) = match self {
-            Decimals::Point => ('.', ','),
-            Decimals::Comma => (',', '.'),
-        };
         if !cell.contains(thousands) {
             return cell.replace(decimal, ".").parse().ok();
         }
@@ -232,6 +233,14 @@ impl Decimals {
         let grouped = (1..=3).contains(&leading.len()) && leading != "0" && groups.all(|group| group.len() == 3);
         let plain = format!("{}.{fraction}", whole.replace(thousands, ""));
         grouped.then(|| plain.parse().ok()).flatten()
+    }
+
+    /// The sign before decimals, and that between thousands.
+    fn signs(self) -> (char, char) {
+        match self {
+            Decimals::Point => ('.', ','),
+            Decimals::Comma => (',', '.'),
+        }
     }
 
     fn expected(self) -> &'static str {
@@ -252,10 +261,8 @@ fn looks_like_a_number(cell: &str) -> bool {
 }
 
 fn is_missing(cell: &str) -> bool {
-    matches!(
-        cell.to_ascii_lowercase().as_str(),
-        "" | "nan" | "na" | "n/a" | "#n/a" | "#nv" | "null" | "-" | "--"
-    )
+    const MISSING: [&str; 9] = ["", "nan", "na", "n/a", "#n/a", "#nv", "null", "-", "--"];
+    MISSING.iter().any(|missing| cell.eq_ignore_ascii_case(missing))
 }
 
 #[cfg(test)]

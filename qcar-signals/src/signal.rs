@@ -56,7 +56,7 @@ pub enum TimeBase {
         step: f64,
     },
     /// These times, finite and never decreasing; one for each sample.
-    Times(Arc<[f64]>),
+    Times(Arc<Vec<f64>>),
     /// Not in the file.
     Unknown,
 }
@@ -185,7 +185,7 @@ impl TimeBase {
                 return Err((at, format!("the time {time} s after {before} s")));
             }
         }
-        Ok(TimeBase::Times(times.into()))
+        Ok(TimeBase::Times(Arc::new(times)))
     }
 
     /// Time of the first sample, s.

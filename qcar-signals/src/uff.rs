@@ -3,15 +3,19 @@
 //!
 //! Source: the definitions of the datasets that the University of Cincinnati publishes.
 
+use std::str::FromStr;
+
+use memchr::memchr;
+
 use crate::bytes::{Number, Order, text};
+use crate::decimal;
 use crate::error::{Fault, Place, Read};
 use crate::signal::{Recording, Signal, Source, TimeBase, evenly};
 
 /// True if a file begins like UFF: a line of -1, then the number of a dataset.
 pub(crate) fn is_uff(bytes: &[u8]) -> bool {
     let mut lines = Lines { bytes, at: 0 };
-    let first = lines.find(|line| !line.1.trim().is_empty());
-    first.is_some_and(|line| is_border(&line.1)) && lines.next().is_some_and(|line| Header::of(&line.1).is_some())
+    lines.filled().is_some_and(|line| line.is_border()) && lines.next().is_some_and(|line| Header::of(line).is_some())
 }
 
 /// Reads all datasets of a file.
@@ -19,26 +23,20 @@ pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
     let mut recording = Recording::new("UFF 58");
     let mut lines = Lines { bytes, at: 0 };
     let mut units = Units { length: "", force: "" };
-    while let Some((at, line)) = lines.next() {
-        if line.trim().is_empty() {
-            continue;
-        }
-        let header = if is_border(&line) { lines.next() } else { None };
-        let Some(header) = header.and_then(|(_, line)| Header::of(&line)) else {
-            let found = format!("`{}`", line.trim().chars().take(40).collect::<String>());
-            return Err(Fault::damaged(
-                Place::Byte(at),
-                found,
-                "a line of -1 and the number of a dataset",
-            ));
+    while let Some(line) = lines.filled() {
+        let header = if line.is_border() { lines.next() } else { None };
+        let Some(header) = header.and_then(Header::of) else {
+            let found = format!("`{}`", line.text().trim().chars().take(40).collect::<String>());
+            let expected = "a line of -1 and the number of a dataset";
+            return Err(Fault::damaged(line.place(), found, expected));
         };
-        let place = Place::Byte(at);
+        let place = line.place();
         match header.number {
             58 => function(&mut recording, &mut lines, &header, &units, place)?,
             number => {
-                let content = lines.until_border(&format!("dataset {number}"))?;
+                let mut content = lines.until_border(&format!("dataset {number}"))?;
                 match number {
-                    164 => units = Units::of(&content),
+                    164 => units = Units::of(content.next()),
                     151 => {}
                     _ => recording.pass_over(format!("dataset {number}"), place, what_else(number)),
                 }
@@ -58,49 +56,75 @@ fn what_else(number: u32) -> &'static str {
     }
 }
 
-/// Lines with the position of their first byte.
+/// A line without its end.
+#[derive(Clone, Copy)]
+struct Line<'a> {
+    /// Position of its first byte.
+    at: u64,
+    bytes: &'a [u8],
+}
+
+impl Line<'_> {
+    fn place(&self) -> Place {
+        Place::Byte(self.at)
+    }
+
+    fn text(&self) -> String {
+        text(self.bytes)
+    }
+
+    fn is_border(&self) -> bool {
+        self.bytes.trim_ascii() == b"-1"
+    }
+}
+
+/// The lines from a byte on.
 struct Lines<'a> {
     bytes: &'a [u8],
     at: usize,
 }
 
-impl Iterator for Lines<'_> {
-    type Item = (u64, String);
+impl<'a> Iterator for Lines<'a> {
+    type Item = Line<'a>;
 
-    fn next(&mut self) -> Option<(u64, String)> {
+    fn next(&mut self) -> Option<Line<'a>> {
         let start = self.at;
         let rest = self.bytes.get(start..).filter(|rest| !rest.is_empty())?;
-        let length = rest.iter().position(|&byte| byte == b'\n');
+        let length = memchr(b'\n', rest);
         self.at = start + length.map_or(rest.len(), |length| length + 1);
         let line = &rest[..length.unwrap_or(rest.len())];
-        Some((start as u64, text(line.strip_suffix(b"\r").unwrap_or(line))))
+        Some(Line {
+            at: start as u64,
+            bytes: line.strip_suffix(b"\r").unwrap_or(line),
+        })
     }
 }
 
-impl Lines<'_> {
-    /// The lines up to the next border; the border is skipped.
-    fn until_border(&mut self, what: &str) -> Read<Vec<(u64, String)>> {
-        let mut content = Vec::new();
-        for line in self.by_ref() {
-            if is_border(&line.1) {
-                return Ok(content);
-            }
-            content.push(line);
-        }
-        Err(self.cut(format!("{what} without the line of -1 that ends it")))
+impl<'a> Lines<'a> {
+    /// The next line that is not empty.
+    fn filled(&mut self) -> Option<Line<'a>> {
+        self.find(|line| !line.bytes.trim_ascii().is_empty())
     }
 
-    fn needed(&mut self, what: &str) -> Read<(u64, String)> {
+    /// The lines up to the next border; the border is skipped.
+    fn until_border(&mut self, what: &str) -> Read<Lines<'a>> {
+        let at = self.at;
+        match self.find(Line::is_border) {
+            Some(border) => Ok(Lines {
+                bytes: &self.bytes[..border.at as usize],
+                at,
+            }),
+            None => Err(self.cut(format!("{what} without the line of -1 that ends it"))),
+        }
+    }
+
+    fn needed(&mut self, what: &str) -> Read<Line<'a>> {
         self.next().ok_or_else(|| self.cut(format!("no {what}")))
     }
 
     fn cut(&self, found: String) -> Box<Fault> {
         Fault::cut_off(Place::Byte(self.bytes.len() as u64), found, "whole datasets")
     }
-}
-
-fn is_border(line: &str) -> bool {
-    line.trim() == "-1"
 }
 
 /// The first line of a dataset: number 6, then for a binary one `b` 1, byte order 6, kind of numbers 6, lines of text
@@ -117,16 +141,17 @@ struct Binary {
 }
 
 impl Header {
-    fn of(line: &str) -> Option<Header> {
-        let number = columns(line, 0, 6).parse().ok()?;
-        let binary = (columns(line, 6, 7) == "b").then(|| Binary {
-            order: if columns(line, 7, 13) == "2" {
+    fn of(line: Line) -> Option<Header> {
+        let line = line.text();
+        let number = columns(&line, 0, 6).parse().ok()?;
+        let binary = (columns(&line, 6, 7) == "b").then(|| Binary {
+            order: if columns(&line, 7, 13) == "2" {
                 Order::Big
             } else {
                 Order::Little
             },
-            ieee: columns(line, 13, 19) == "2",
-            bytes: columns(line, 31, 43).parse().unwrap_or(0),
+            ieee: columns(&line, 13, 19) == "2",
+            bytes: columns(&line, 31, 43).parse().unwrap_or(0),
         });
         Some(Header { number, binary })
     }
@@ -138,13 +163,23 @@ fn columns(line: &str, from: usize, to: usize) -> &str {
     line[byte(from)..byte(to)].trim()
 }
 
-/// The number in columns of a line of text; exponents may be written with D.
-fn number<T: std::str::FromStr>(at: u64, line: &str, from: usize, to: usize, what: &str) -> Read<T> {
-    let text = columns(line, from, to);
-    text.replace(['D', 'd'], "e").parse().map_err(|_| {
-        let found = format!("`{text}` in columns {} to {to}", from + 1);
-        Fault::damaged(Place::Byte(at), found, what)
-    })
+/// The integer in columns of a line.
+fn integer<T: FromStr>(line: Line, from: usize, to: usize, what: &str) -> Read<T> {
+    let parsed = columns(&line.text(), from, to).parse();
+    parsed.map_err(|_| no_number(line, from, to, what))
+}
+
+/// The number in columns of a line, which are bytes; exponents may be written with D.
+fn number(line: Line, from: usize, to: usize, what: &str) -> Read<f64> {
+    let field = &line.bytes[from.min(line.bytes.len())..to.min(line.bytes.len())];
+    let other = || text(field).trim().replace(['D', 'd'], "e").parse().ok();
+    let parsed = decimal::exact(field, b'.', b"eEdD").or_else(other);
+    parsed.ok_or_else(|| no_number(line, from, to, what))
+}
+
+fn no_number(line: Line, from: usize, to: usize, what: &str) -> Box<Fault> {
+    let found = format!("`{}` in columns {} to {to}", columns(&line.text(), from, to), from + 1);
+    Fault::damaged(line.place(), found, what)
 }
 
 /// Units of a file, for functions that state none.
@@ -154,9 +189,9 @@ struct Units {
 }
 
 impl Units {
-    fn of(content: &[(u64, String)]) -> Units {
-        let code = content.first().map_or("", |(_, line)| columns(line, 0, 10));
-        let (length, force) = match code {
+    fn of(first: Option<Line>) -> Units {
+        let line = first.map_or_else(String::new, |line| line.text());
+        let (length, force) = match columns(&line, 0, 10) {
             "1" => ("m", "N"),
             "2" => ("ft", "lbf"),
             "3" => ("m", "kgf"),
@@ -251,50 +286,42 @@ type Numbers = (Option<Vec<f64>>, Vec<f64>);
 
 impl Function {
     fn read(lines: &mut Lines, units: &Units) -> Read<Function> {
-        let (_, name) = lines.needed("name of a function")?;
+        let name = lines.needed("name of a function")?;
         for _ in 0..4 {
             lines.needed("description of a function")?;
         }
-        let (kind_at, freedom) = lines.needed("degree of freedom")?;
-        let (form_at, form) = lines.needed("form of the data")?;
-        let (axis_at, axis) = lines.needed("axis of a function")?;
-        let (values_at, values) = lines.needed("unit of a function")?;
+        let freedom = lines.needed("degree of freedom")?;
+        let form = lines.needed("form of the data")?;
+        let axis = lines.needed("axis of a function")?;
+        let values = lines.needed("unit of a function")?;
         lines.needed("denominator of a function")?;
         lines.needed("third axis of a function")?;
-        let named = match columns(&values, 47, 67) {
-            "" | "NONE" => None,
-            unit => Some(unit.to_string()),
-        };
-        let data: u32 = number(form_at, &form, 0, 10, "the type of the values")?;
+        let data: u32 = integer(form, 0, 10, "the type of the values")?;
         if !matches!(data, 2 | 4 | 5 | 6) {
-            return Err(Fault::damaged(
-                Place::Byte(form_at),
-                format!("values of type {data}"),
-                "type 2, 4, 5 or 6",
-            ));
+            let found = format!("values of type {data}");
+            return Err(Fault::damaged(form.place(), found, "type 2, 4, 5 or 6"));
         }
-        let abscissa: u32 = number(axis_at, &axis, 0, 10, "the kind of the axis")?;
-        let kind = number(kind_at, &freedom, 0, 5, "the type of the function")?;
-        let meaning = number(values_at, &values, 0, 10, "the kind of the values")?;
+        let abscissa: u32 = integer(axis, 0, 10, "the kind of the axis")?;
+        let kind = integer(freedom, 0, 5, "the type of the function")?;
+        let meaning = integer(values, 0, 10, "the kind of the values")?;
+        let unit = match columns(&values.text(), 47, 67) {
+            "" | "NONE" => units.unit(meaning),
+            unit => unit.to_string(),
+        };
         Ok(Function {
-            name: name.trim().into(),
-            point: point(&freedom),
+            name: name.text().trim().into(),
+            point: point(&freedom.text()),
             kind,
             over_time: abscissa == 17 || (abscissa == 0 && kind == 1),
             complex: data > 4,
             double: matches!(data, 4 | 6),
-            even: number::<u32>(form_at, &form, 20, 30, "the spacing")? == 1,
-            count: number(form_at, &form, 10, 20, "the number of values")?,
-            start: number(form_at, &form, 30, 43, "the first time")?,
-            step: number(form_at, &form, 43, 56, "the time step")?,
-            unit: named.unwrap_or_else(|| units.unit(meaning)),
-            time_unit: columns(&axis, 47, 67).replace("NONE", ""),
+            even: integer::<u32>(form, 20, 30, "the spacing")? == 1,
+            count: integer(form, 10, 20, "the number of values")?,
+            start: number(form, 30, 43, "the first time")?,
+            step: number(form, 43, 56, "the time step")?,
+            unit,
+            time_unit: columns(&axis.text(), 47, 67).replace("NONE", ""),
         })
-    }
-
-    /// Number of stored numbers for one sample, including the time if it is stored.
-    fn numbers_of_a_sample(&self) -> u64 {
-        1 + u64::from(self.complex) + u64::from(!self.even)
     }
 
     /// The values after the text of a binary dataset. Uneven times are of single precision, unless the declared size
@@ -330,8 +357,7 @@ impl Function {
         }
         let data = &lines.bytes[lines.at..lines.at + promised as usize];
         lines.at += promised as usize;
-        let next = lines.by_ref().find(|line| !line.1.trim().is_empty());
-        if !next.is_some_and(|line| is_border(&line.1)) {
+        if !lines.filled().is_some_and(|line| line.is_border()) {
             let expected = "a line of -1 after the values";
             return Err(Fault::damaged(Place::Byte(lines.at as u64), "something else", expected));
         }
@@ -344,25 +370,31 @@ impl Function {
 
     /// The values in lines: six of 13 columns or four of 20; uneven times take 13 columns each.
     fn ascii(&self, lines: &mut Lines) -> Read<Numbers> {
-        let width = if self.double { 20 } else { 13 };
-        let numbers_of_a_sample = self.numbers_of_a_sample() as usize;
-        let is_time = |place: usize| !self.even && place.is_multiple_of(numbers_of_a_sample);
-        let mut all = Vec::new();
         let content = lines.until_border(&format!("dataset 58 `{}`", self.name))?;
-        for (at, line) in &content {
-            let (mut from, end) = (0, line.trim_end().chars().count());
-            while from < end {
-                let to = from + if is_time(all.len()) { 13 } else { width };
-                all.push(number::<f64>(*at, line, from, to, "a number")?);
-                from = to;
+        let place = Place::Byte(content.at as u64);
+        let width = if self.double { 20 } else { 13 };
+        let imaginary = self.complex.then_some(width);
+        let of_a_sample = [(!self.even).then_some(13), Some(width), imaginary];
+        let numbers = of_a_sample.iter().flatten().count();
+        let mut widths = of_a_sample.into_iter().flatten().cycle();
+        let mut all = Vec::with_capacity((content.bytes.len() - content.at) / 13);
+        for line in content {
+            let (mut from, end) = (0, line.bytes.trim_ascii_end().len());
+            while from < end
+                && let Some(width) = widths.next()
+            {
+                all.push(number(line, from, from + width, "a number")?);
+                from += width;
             }
         }
-        if all.len() as u64 != self.count.saturating_mul(self.numbers_of_a_sample()) {
-            let place = Place::Byte(content.first().map_or(lines.at as u64, |(at, _)| *at));
+        if all.len() as u64 != self.count.saturating_mul(numbers as u64) {
             let found = format!("{} numbers", all.len());
             return Err(Fault::damaged(place, found, format!("{} samples", self.count)));
         }
-        let every = |from: usize| all.iter().skip(from).step_by(numbers_of_a_sample).copied().collect();
+        if numbers == 1 {
+            return Ok((None, all));
+        }
+        let every = |from: usize| all.iter().skip(from).step_by(numbers).copied().collect();
         let times = (!self.even).then(|| every(0));
         Ok((times, every(usize::from(!self.even))))
     }

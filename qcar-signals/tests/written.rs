@@ -99,29 +99,31 @@ fn arrays_texts_and_structures_come_back_from_mat() {
         ("none".to_string(), Array::rows(&[], 3)),
         ("ride".to_string(), capture),
     ];
-    let recording = read_back("ride.mat", &v5("a test", &variables).unwrap());
-    let signal = |name: &str| recording.signals.iter().find(|own| own.name == name).unwrap();
-    assert_eq!(
-        (signal("f").unit.as_str(), &signal("f").samples.to_vec()[..]),
-        ("N", &[0.1, -0.2, 1e300][..])
-    );
-    assert_eq!(times(signal("a")), [0.0, 0.5, 1.0]);
-    assert_eq!(signal("pair[:,1]").samples, [2.0, 4.0]);
-    let scalar = |name: &str| {
-        recording
-            .scalars
-            .iter()
-            .find(|own| own.name == name)
-            .map(|own| own.value.clone())
-    };
-    assert_eq!(scalar("number"), Some(Value::Number(-0.1)));
-    assert_eq!(scalar("text"), Some(Value::Text("größer µ".into())));
-    assert_eq!(
-        recording.passed_over.len(),
-        1,
-        "the empty array: {:?}",
-        recording.passed_over
-    );
+    for file in [v5("a test", &variables).unwrap(), v73(&variables).unwrap()] {
+        let recording = read_back("ride.mat", &file);
+        let signal = |name: &str| recording.signals.iter().find(|own| own.name == name).unwrap();
+        assert_eq!(
+            (signal("f").unit.as_str(), &signal("f").samples.to_vec()[..]),
+            ("N", &[0.1, -0.2, 1e300][..])
+        );
+        assert_eq!(times(signal("a")), [0.0, 0.5, 1.0]);
+        assert_eq!(signal("pair[:,1]").samples, [2.0, 4.0]);
+        let scalar = |name: &str| {
+            recording
+                .scalars
+                .iter()
+                .find(|own| own.name == name)
+                .map(|own| own.value.clone())
+        };
+        assert_eq!(scalar("number"), Some(Value::Number(-0.1)));
+        assert_eq!(scalar("text"), Some(Value::Text("größer µ".into())));
+        assert_eq!(
+            recording.passed_over.len(),
+            1,
+            "the empty array: {:?}",
+            recording.passed_over
+        );
+    }
 }
 
 #[test]

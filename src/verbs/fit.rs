@@ -8,7 +8,7 @@ use clap::Args;
 use clap_complete::engine::ArgValueCompleter;
 use nalgebra::Complex;
 use qcar_dsl::check::Unseen;
-use qcar_runtime::campaign::{Campaign, Role};
+use qcar_runtime::campaign::{Campaign, Role, Test};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::fit::bootstrap::Bootstrap;
 use qcar_runtime::fit::measure::levels;
@@ -50,8 +50,9 @@ pub(crate) mod nonlinear;
 ///
 /// A linear model is fitted to transmissibilities, with all levels in one cost. A nonlinear model is fitted to all runs
 /// that it predicts, including cleats, K&C curves and dynamometer tables: to the first three harmonics of sweeps by
-/// harmonic balance, and to records sample by sample, each with its own uncertainty. `--all-runs` does the same for a
-/// linear model. Runs with the role `fit` are fitted; `held_out` runs are only compared with. Estimated are the
+/// harmonic balance, and to records sample by sample, each with its own uncertainty. A linear model is too with
+/// `--all-runs`, and if time histories but no sweeps are to be fitted; `--channels` or `--bootstrap` then chooses
+/// transmissibilities. Runs with the role `fit` are fitted; `held_out` runs are only compared with. Estimated are the
 /// parameters with `fit = true` in the campaign, and those that only the model gives, with a default and a range,
 /// unless they are `known`. A parameter that no fitted channel depends on takes its value from the K&C curve that
 /// determines it, if the campaign has one. The exit status is 1 if the search does not end at a minimum, or if every
@@ -120,7 +121,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     if let Some(folder) = &arguments.out {
         files::check_folder(folder, &campaign.name, &model.about().name)?;
     }
-    if !model.about().linear || arguments.choices.all_runs {
+    if !is_by_transmissibilities(&campaign, model.about(), &arguments.choices) {
         return nonlinear::run(campaign, arguments);
     }
     let fitted = fit(&arguments.campaign, &arguments.choices)?;
@@ -137,6 +138,16 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     } else {
         Err(Failure::Finding(result))
     }
+}
+
+/// True for a linear model that is fitted to its transmissibilities. Time histories alone are compared sample by sample,
+/// unless something is requested that only the cost of transmissibilities has.
+pub(crate) fn is_by_transmissibilities(campaign: &Campaign, about: &About, choices: &Choices) -> bool {
+    let fitted = || campaign.runs.iter().filter(|run| run.role == Role::Fit);
+    let only_records = fitted().any(|run| matches!(run.test, Test::TimeHistory(_)))
+        && !fitted().any(|run| matches!(run.test, Test::Sweep(_)));
+    let of_channels = !choices.channels.is_empty() || choices.bootstrap.is_some();
+    about.linear && !choices.all_runs && (of_channels || !only_records)
 }
 
 /// A campaign, the model that was fitted to it, and the result.

@@ -98,9 +98,10 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         model: arguments.model.clone(),
         free: arguments.free.clone(),
         fix: arguments.fix.clone(),
+        all_runs: arguments.all_runs,
         ..Choices::default()
     };
-    let planned = match model.about().linear && !arguments.all_runs {
+    let planned = match fit::is_by_transmissibilities(&campaign, model.about(), &choices) {
         true => of_channels(arguments, &choices)?,
         false => of_runs(campaign, arguments, &choices)?,
     };

@@ -152,6 +152,42 @@ fn gains_of_input_and_output_limit_what_a_record_determines() {
     }
 }
 
+/// The mass starts in motion, which transmissibilities take for a response to the force; a fit to the samples finds the start too.
+/// Channels are only those of transmissibilities, so that naming one asks for them.
+#[test]
+fn a_linear_model_is_fitted_to_the_samples_of_time_histories_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let truth = [
+        ("m_body", 2.0, "kg"),
+        ("c_body", 3.0, "N s/m"),
+        ("k_body", 800.0, "N/m"),
+    ];
+    let parameters: String = truth
+        .iter()
+        .map(|(name, value, unit)| parameter(name, 0.8 * value, unit, ""))
+        .collect();
+    let force = (0..SAMPLES).map(|k| push((k as f64 + 0.5) / RATE)).collect();
+    let columns = [("push", force), ("z", mass([0.02, -0.4], push))];
+    campaign(
+        folder.path(),
+        "one_mass",
+        &parameters,
+        "band_limited = false",
+        &[&columns],
+    );
+    let path = folder.path().to_str().unwrap();
+    let fit = |more: &[&str]| -> Value {
+        let words = [&["fit", path, "--starts", "1", "--format", "json"], more].concat();
+        serde_json::from_str(&succeeds(&words)).unwrap()
+    };
+    let (of_samples, of_channel) = (fit(&[]), fit(&["--channels", "f_to_body"]));
+    for (name, truth, _) in truth {
+        let error = |fitted: &Value| (fitted["parameters"][name]["value"].as_f64().unwrap() / truth - 1.0).abs();
+        assert!(error(&of_samples) < 1e-3, "{name}: {of_samples}");
+        assert!(error(&of_channel) > 1e-3, "{name}: {of_channel}");
+    }
+}
+
 /// A mass that is let go, or struck: nothing drives it, and no sensor shows how fast it is at first.
 #[test]
 fn a_record_that_starts_in_motion_needs_no_input() {

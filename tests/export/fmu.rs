@@ -19,6 +19,33 @@ const SAMPLES: usize = 251;
 /// How far trajectories may be from ours, in parts of the largest value of each.
 const TOLERANCE: f64 = 1e-6;
 
+/// FMPy brings the headers of the FMI project, which list what a library must have.
+#[test]
+fn libraries_have_every_function_of_the_headers_of_the_standard() {
+    let Some(python) = python_with("fmpy", "functions of libraries") else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    for (fmi, least) in [("2", 44), ("3", 75)] {
+        let unit = folder.path().join(format!("unit{fmi}.fmu"));
+        let out = ["--as", "fmu", "--fmi", fmi, "--out", unit.to_str().unwrap()];
+        qcar(&[&["export", "quarter_car"], &out[..]].concat());
+        let program = format!(
+            "
+import ctypes, fmpy, pathlib, re
+header = (pathlib.Path(fmpy.__file__).parent / 'c-code' / 'fmi{fmi}Functions.h').read_text()
+names = re.findall(r'#define (fmi{fmi}\\w+) +fmi{fmi}FullName', header)
+folder = pathlib.Path(fmpy.extract('unit{fmi}.fmu'))
+library = ctypes.CDLL(str(next((folder / 'binaries').rglob('*.so'))))
+print(len(names), *[name for name in names if not hasattr(library, name)])"
+        );
+        let said = run(&python, &["-c", &program], folder.path());
+        let words: Vec<&str> = said.split_whitespace().collect();
+        assert!(words[0].parse::<usize>().unwrap() >= least, "{said}");
+        assert_eq!(words[1..], [""; 0], "missing in FMI {fmi}");
+    }
+}
+
 #[test]
 fn a_linear_axle_moves_in_fmpy_as_here() {
     compare("axle_d", Some("tests/data/axle_d.toml"), None);

@@ -1,4 +1,4 @@
-//! Simulated runs as MDF and MAT, in asammdf, SciPy and our own readers: the table that is written as CSV.
+//! Simulated runs as MDF and MAT, in asammdf, SciPy, h5py and our own readers: the table that is written as CSV.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -19,18 +19,15 @@ const RUNS: [(&str, &str); 2] = [
 /// Of each channel its unit, times and samples.
 type Channels = BTreeMap<String, (String, Vec<f64>, Vec<f64>)>;
 
-/// Simulates a campaign and gives the folder with a run as `.csv`, `.mf4` and `.mat`.
+/// Kinds of files beside CSV, each with its ending.
+const KINDS: [(&str, &str); 3] = [("mdf", "mf4"), ("mat", "mat"), ("mat73", "mat")];
+
+/// Simulates a campaign and gives the folder with a folder of runs for each kind.
 fn simulated(campaign: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
-    for kind in ["csv", "mdf", "mat"] {
-        qcar(&[
-            "simulate",
-            campaign,
-            "--out",
-            folder.path().to_str().unwrap(),
-            "--as",
-            kind,
-        ]);
+    for kind in ["csv"].into_iter().chain(KINDS.map(|(kind, _)| kind)) {
+        let out = folder.path().join(kind);
+        qcar(&["simulate", campaign, "--out", out.to_str().unwrap(), "--as", kind]);
     }
     folder
 }
@@ -84,9 +81,10 @@ fn agree(found: &Channels, file: &Path, what: &str) {
 fn our_own_readers_read_what_is_written() {
     for (campaign, name) in RUNS {
         let folder = simulated(campaign);
-        let file = |end: &str| folder.path().join(format!("{name}.{end}"));
-        for end in ["mf4", "mat"] {
-            let recording = read(&file(end)).unwrap_or_else(|error| panic!("{error}"));
+        let table = folder.path().join(format!("csv/{name}.csv"));
+        for (kind, end) in KINDS {
+            let file = folder.path().join(format!("{kind}/{name}.{end}"));
+            let recording = read(&file).unwrap_or_else(|error| panic!("{error}"));
             let channel = |signal: &qcar_signals::signal::Signal| {
                 let times = match &signal.time {
                     TimeBase::Even { start, step } => {
@@ -100,39 +98,33 @@ fn our_own_readers_read_what_is_written() {
                     (signal.unit.clone(), times, signal.samples.to_vec()),
                 )
             };
-            agree(&recording.signals.iter().map(channel).collect(), &file("csv"), end);
-            assert!(qcar(&["inspect", file(end).to_str().unwrap()]).contains("m/s^2") || name == "multisine_1");
+            agree(&recording.signals.iter().map(channel).collect(), &table, kind);
+            assert!(qcar(&["inspect", file.to_str().unwrap()]).contains("m/s^2") || name == "multisine_1");
         }
     }
 }
 
 #[test]
-fn asammdf_and_scipy_read_what_is_written() {
-    let Some(python) = python_with("asammdf, scipy", "simulated runs as MDF and MAT") else {
+fn asammdf_scipy_and_h5py_read_what_is_written() {
+    let Some(python) = python_with("asammdf, scipy, h5py", "simulated runs as MDF and MAT") else {
         return;
     };
     for (campaign, name) in RUNS {
         let folder = simulated(campaign);
-        let path = |end: &str| {
-            folder
-                .path()
-                .join(format!("{name}.{end}"))
-                .to_str()
-                .unwrap()
-                .to_string()
-        };
-        let result = path("json");
+        let path = |kind: &str, end: &str| format!("{}/{kind}/{name}.{end}", folder.path().display());
+        let result = format!("{}/read.json", folder.path().display());
         let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/export/histories.py");
-        run(&python, &[script, &path("mf4"), &path("mat"), &result], folder.path());
+        let [mdf, mat, mat73] = KINDS.map(|(kind, end)| path(kind, end));
+        run(&python, &[script, &mdf, &mat, &mat73, &result], folder.path());
         let answer: Value = serde_json::from_str(&fs::read_to_string(&result).unwrap()).unwrap();
         assert_eq!(
             (answer["version"].as_str(), answer["groups"].as_u64()),
             (Some("4.10"), Some(1))
         );
         assert_eq!(answer["name"], name);
-        for kind in ["mdf", "mat"] {
+        for (kind, _) in KINDS {
             let channels: Channels = serde_json::from_value(answer[kind].clone()).unwrap();
-            agree(&channels, Path::new(&path("csv")), kind);
+            agree(&channels, Path::new(&path("csv", "csv")), kind);
         }
     }
 }

@@ -7,7 +7,7 @@ use std::process::Command;
 use qcar_runtime::campaign::{Campaign, Test};
 use serde_json::Value;
 
-use crate::writers::{Channel, Group, mat5, mdf4, rpc, tables, tdms, uff};
+use crate::writers::{Channel, Group, mat5, mat73, mdf3, mdf4, rpc, tables, tdms, uff};
 
 const ORIGINAL: &str = "models/campaigns/axle_a_rig";
 const G: f64 = 9.80665;
@@ -129,6 +129,11 @@ fn mdf4_gives_the_same_fit() {
 }
 
 #[test]
+fn mdf3_gives_the_same_fit() {
+    same("mdf", mdf3::file);
+}
+
+#[test]
 fn uff_58_gives_the_same_fit() {
     same("uff", uff::file);
 }
@@ -141,6 +146,11 @@ fn uff_58b_gives_the_same_fit() {
 #[test]
 fn mat_5_gives_the_same_fit() {
     same("mat", mat5::file);
+}
+
+#[test]
+fn mat_7_3_gives_the_same_fit() {
+    same("mat", mat73::file);
 }
 
 #[test]

@@ -37,11 +37,11 @@ pub(super) fn superblock(file: &Bytes) -> Option<u64> {
 }
 
 /// All variables of a file whose superblock is at byte `at`.
-pub(super) fn variables(file: &Bytes, at: u64, wanted: &Wanted) -> Read<Vec<Variable>> {
-    let file = file.part(at, file.len() - at, "HDF5")?;
+pub(super) fn variables(whole: &Bytes, at: u64, wanted: &Wanted) -> Read<Vec<Variable>> {
+    let file = whole.part(at, whole.len() - at, "HDF5")?;
     let version = file.u8(8, "the superblock")?;
     if matches!(version, 2 | 3) {
-        return latest::variables(&file, wanted);
+        return latest::variables(whole, wanted);
     }
     let sizes = (file.u8(13, "the superblock")?, file.u8(14, "the superblock")?);
     if version > 1 || sizes != (8, 8) {

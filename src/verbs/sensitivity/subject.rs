@@ -203,7 +203,7 @@ fn of_campaign(folder: &Path, beneath: &SubjectOptions<'_>) -> Result<Subject, F
         return of_model(&folder.display().to_string(), &model, &[], &beneath);
     }
     let facts = campaign.vehicle.iter().cloned().collect();
-    let (values, parameters, pairs) = if linear {
+    let (values, parameters, pairs) = if fit::is_by_transmissibilities(&campaign, loaded.about(), &Choices::default()) {
         let fitted = fit::fit(folder, &Choices::default())?;
         (fitted.values(), fitted.fit.parameters, fitted.fit.all_correlations)
     } else {

@@ -9,7 +9,7 @@ pub fn file(groups: &[Group]) -> Vec<u8> {
     let header = block(&mut file, b"##HD", &[0; 6], &[0; 32]);
     let mut link = header + 24;
     for (number, group) in groups.iter().enumerate() {
-        let data = block(&mut file, b"##DT", &[], &records(group));
+        let data = block(&mut file, b"##DT", &[], &group.records());
         let channels = channels(&mut file, group);
         let name = text(&mut file, &format!("group {number}"));
         let mut facts = [0; 32];
@@ -45,20 +45,6 @@ fn block(file: &mut Vec<u8>, id: &[u8; 4], links: &[u64], data: &[u8]) -> u64 {
 
 fn text(file: &mut Vec<u8>, text: &str) -> u64 {
     block(file, b"##TX", &[], format!("{text}\0").as_bytes())
-}
-
-fn records(group: &Group) -> Vec<u8> {
-    let mut records = Vec::new();
-    for sample in 0..group.len() {
-        records.extend((sample as f64 / group.rate).to_le_bytes());
-        records.extend(
-            group
-                .channels
-                .iter()
-                .flat_map(|channel| channel.samples[sample].to_le_bytes()),
-        );
-    }
-    records
 }
 
 /// The list of channels, written from its end; gives the address of the first.

@@ -2,6 +2,8 @@
 //! shared with the readers.
 
 pub mod mat5;
+pub mod mat73;
+pub mod mdf3;
 pub mod mdf4;
 pub mod rpc;
 pub mod tables;
@@ -36,5 +38,16 @@ impl Channel {
 impl Group {
     pub fn len(&self) -> usize {
         self.channels[0].samples.len()
+    }
+
+    /// Time and values of each sample as doubles, sample by sample.
+    pub fn records(&self) -> Vec<u8> {
+        let mut records = Vec::with_capacity(8 * self.len() * (1 + self.channels.len()));
+        for sample in 0..self.len() {
+            records.extend((sample as f64 / self.rate).to_le_bytes());
+            let values = self.channels.iter().map(|channel| channel.samples[sample]);
+            records.extend(values.flat_map(f64::to_le_bytes));
+        }
+        records
     }
 }

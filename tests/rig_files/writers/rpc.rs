@@ -1,4 +1,4 @@
-//! RPC III: parameters in a header of blocks, then groups of short integers.
+//! RPC III: parameters in a header of blocks, then groups of short integers or floats.
 
 use super::{Channel, Group};
 
@@ -15,8 +15,24 @@ pub fn step(channel: &Channel) -> f64 {
         / FULL_SCALE
 }
 
-/// A file with this group.
+/// A file with this group as short integers.
 pub fn file(group: &Group) -> Vec<u8> {
+    let steps: Vec<f64> = group.channels.iter().map(step).collect();
+    let short = |channel: usize, value: f64| ((value / steps[channel]).round() as i16).to_le_bytes();
+    [header(group, "SHORT_INTEGER", &steps), frames(group, short)].concat()
+}
+
+/// A file with this group as floats of single precision.
+pub fn floats(group: &Group) -> Vec<u8> {
+    let single = |_, value: f64| (value as f32).to_le_bytes();
+    [
+        header(group, "FLOATING_POINT", &vec![1.0; group.channels.len()]),
+        frames(group, single),
+    ]
+    .concat()
+}
+
+fn header(group: &Group, data_type: &str, scales: &[f64]) -> Vec<u8> {
     let frames = group.len().div_ceil(POINTS_OF_GROUP);
     let mut parameters = vec![
         ("FORMAT".into(), "BINARY_IEEE_LITTLE_END".into()),
@@ -30,32 +46,34 @@ pub fn file(group: &Group) -> Vec<u8> {
         ("PTS_PER_GROUP".into(), POINTS_OF_GROUP.to_string()),
         ("FRAMES".into(), frames.to_string()),
         ("SAMPLES".into(), group.len().to_string()),
-        ("DATA_TYPE".into(), "SHORT_INTEGER".into()),
+        ("DATA_TYPE".into(), data_type.into()),
     ];
-    let steps: Vec<f64> = group.channels.iter().map(step).collect();
-    for (number, (channel, step)) in group.channels.iter().zip(&steps).enumerate() {
+    for (number, (channel, scale)) in group.channels.iter().zip(scales).enumerate() {
         parameters.push((format!("DESC.CHAN_{}", number + 1), channel.name.clone()));
         parameters.push((format!("UNITS.CHAN_{}", number + 1), channel.unit.clone()));
-        parameters.push((format!("SCALE.CHAN_{}", number + 1), format!("{step:E}")));
+        parameters.push((format!("SCALE.CHAN_{}", number + 1), format!("{scale:E}")));
     }
     let blocks = parameters.len().div_ceil(4);
     parameters[1].1 = blocks.to_string();
     parameters[2].1 = parameters.len().to_string();
-    let mut file: Vec<u8> = parameters
+    let mut header: Vec<u8> = parameters
         .iter()
         .flat_map(|(name, value)| [padded(name, 32), padded(value, 96)].concat())
         .collect();
-    file.resize(blocks * 512, 0);
-    for frame in 0..frames {
-        for (channel, step) in group.channels.iter().zip(&steps) {
-            let points = frame * POINTS_OF_GROUP..(frame + 1) * POINTS_OF_GROUP;
-            file.extend(points.flat_map(|at| {
-                let value = channel.samples.get(at).copied().unwrap_or(0.0);
-                ((value / step).round() as i16).to_le_bytes()
-            }));
+    header.resize(blocks * 512, 0);
+    header
+}
+
+/// The values of each channel, group after group, the last one padded with zeros.
+fn frames<const N: usize>(group: &Group, stored: impl Fn(usize, f64) -> [u8; N]) -> Vec<u8> {
+    let mut frames = Vec::new();
+    for first in (0..group.len()).step_by(POINTS_OF_GROUP) {
+        for (number, channel) in group.channels.iter().enumerate() {
+            let value = |at: usize| channel.samples.get(at).copied().unwrap_or(0.0);
+            frames.extend((first..first + POINTS_OF_GROUP).flat_map(|at| stored(number, value(at))));
         }
     }
-    file
+    frames
 }
 
 fn padded(text: &str, length: usize) -> Vec<u8> {

@@ -16,7 +16,7 @@ use super::DEEPEST;
 /// Largest ratio of unpacked to packed size.
 const LARGEST_RATIO: u64 = 1100;
 
-/// All variables of a file, which begins with its superblock.
+/// All variables of a file. What stands before its superblock is needed too, since addresses count from the start.
 pub(super) fn variables(file: &Bytes, wanted: &Wanted) -> Read<Vec<Variable>> {
     let bytes = file.all("HDF5")?.into_owned();
     let reader = |what: &str| {
