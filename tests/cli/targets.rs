@@ -38,7 +38,8 @@ fn the_file_of_the_page_is_read() {
         .replace("params = ", "# params = ")
         // The same keys with less to compute.
         .replace("[\"B@80km/h\"]", "[]")
-        .replace("[front]\n", "[front]\ngenerations = 3\n");
+        .replace("[front]\n", "[front]\ngenerations = 3\n")
+        .replace("[space]\nprobability = 0.95", "[space]\nprobability = 0.5");
     fs::write(folder.path().join("targets.toml"), text).unwrap();
     let ran = run_line(folder.path(), "target targets.toml");
     assert!(ran.status < 2, "{}", ran.stderr);
