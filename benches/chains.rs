@@ -16,7 +16,7 @@ use std::process::Command;
 const LENGTHS: [usize; 4] = [10, 20, 40, 80];
 
 /// Verbs with their arguments; CHAIN stands for the model, CAMPAIGN for a campaign that drives it.
-const ASKED: [&str; 12] = [
+const ASKED: [&str; 13] = [
     "check CHAIN",
     "show CHAIN --stage equations",
     "show CHAIN --stage matrices",
@@ -26,6 +26,7 @@ const ASKED: [&str; 12] = [
     "matrices CHAIN --format json",
     "frf CHAIN",
     "frf CHAIN --format json",
+    "compare CHAIN CHAIN",
     "simulate CAMPAIGN/sweep",
     "simulate CAMPAIGN/history",
     "simulate CAMPAIGN/cleat",

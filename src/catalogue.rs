@@ -103,11 +103,20 @@ pub fn load(model: &str) -> Result<Loaded, Failure> {
 /// # Errors
 /// Fails as [`compiled`] does.
 pub fn load_wanted(model: &str, wanted: Wanted) -> Result<Loaded, Failure> {
+    load_and_compile(model, wanted).map(|(loaded, _)| loaded)
+}
+
+/// A model that can run, and the results of the compiler with the wanted responses only.
+///
+/// # Errors
+/// Fails as [`compiled`] does.
+pub fn load_and_compile(model: &str, wanted: Wanted) -> Result<(Loaded, Compiled), Failure> {
     let compiled = compiled_wanted(model, wanted)?;
-    Ok(match models::find(model) {
+    let loaded = match models::find(model) {
         Some(shipped) => Loaded::new(&compiled, Program::Shipped(shipped.model)),
         None => Loaded::file(&compiled),
-    })
+    };
+    Ok((loaded, compiled))
 }
 
 /// A model from its text.
@@ -119,22 +128,22 @@ pub fn load_text(name: &str, text: &str) -> Result<Loaded, Failure> {
 }
 
 /// The model of the user, otherwise that of the campaign: a shipped model, or a file relative to the folder of the
-/// campaign.
+/// campaign, with the wanted responses only.
 ///
 /// # Errors
 /// Fails as [`load`] and [`check_campaign`] do. An unknown name is reported in the campaign if it comes from there.
-pub fn of_campaign(campaign: &Campaign, wanted: Option<&str>) -> Result<Loaded, Failure> {
-    let model = load(&named_by(campaign, wanted)?)?;
+pub fn of_campaign(campaign: &Campaign, model: Option<&str>, wanted: Wanted) -> Result<Loaded, Failure> {
+    let model = load_wanted(&named_by(campaign, model)?, wanted)?;
     check_campaign(model.about(), campaign)?;
     Ok(model)
 }
 
-/// All results of the compiler for the model of the user, otherwise that of the campaign.
+/// The results of the compiler for the model of the user, otherwise that of the campaign, with the wanted responses only.
 ///
 /// # Errors
 /// Fails as [`compiled`] does. An unknown name is reported in the campaign if it comes from there.
-pub fn compiled_of_campaign(campaign: &Campaign, wanted: Option<&str>) -> Result<Compiled, Failure> {
-    compiled(&named_by(campaign, wanted)?)
+pub fn compiled_of_campaign(campaign: &Campaign, model: Option<&str>, wanted: Wanted) -> Result<Compiled, Failure> {
+    compiled_wanted(&named_by(campaign, model)?, wanted)
 }
 
 /// Name or path of the model of the user, otherwise that of the campaign.

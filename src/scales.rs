@@ -8,15 +8,16 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use qcar_dsl::check::Checked;
-use qcar_dsl::compile::derive;
+use qcar_dsl::compile::derive_wanted;
 use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::patch::{Scale, with_all_outputs};
+use qcar_dsl::response::Wanted;
 use qcar_runtime::campaign::{Quantity as Measured, Role};
 use qcar_runtime::discover::Evidence;
 use qcar_runtime::discover::observe::{Kind, Run, Stimulus, signal_of};
 use qcar_runtime::model::{About, Excitation, Model, Quantity, Signal, SignalKind};
 use qcar_runtime::response::parameters::Values;
-use qcar_runtime::response::ratio::ratio;
+use qcar_runtime::response::ratio::Ratios;
 use qcar_runtime::spectrum::transform;
 use qcar_runtime::transmissibility::Point;
 
@@ -39,15 +40,19 @@ pub fn scales(model: &Checked, values: &BTreeMap<String, f64>, evidence: &Eviden
     let Ok(shown) = with_all_outputs(model) else {
         return BTreeMap::new();
     };
-    let shown = Evaluator::new(&derive(shown));
+    let shown = Evaluator::new(&derive_wanted(shown, Wanted::Values));
     let Ok(values) = Values::resolve(shown.about(), &BTreeMap::new(), values) else {
         return BTreeMap::new();
     };
     let mut found = BTreeMap::new();
     let fitted = evidence.runs.iter().filter(|run| run.role == Role::Fit);
+    let mut ratios = Ratios::new(&shown, &values);
     for driven in fitted.flat_map(driven) {
+        let Some(excitation) = excitation(shown.about(), driven.reference) else {
+            continue;
+        };
         for signal in parts(shown.about()) {
-            for (name, amplitude) in amplitudes(&shown, &values, &driven, &signal) {
+            for (name, amplitude) in amplitudes(&mut ratios, excitation, &driven, &signal) {
                 raise(&mut found, name, amplitude);
             }
         }
@@ -132,13 +137,14 @@ fn orders(kind: SignalKind) -> &'static [(Scale, i32)] {
     }
 }
 
-fn amplitudes(model: &Evaluator, values: &Values, driven: &RunExcitation, signal: &Signal) -> Vec<(String, f64)> {
-    let about = model.about();
-    let Some(excitation) = excitation(about, driven.reference) else {
-        return vec![];
-    };
-    let below = signal_of(about, driven.reference);
-    let Ok(ratio) = ratio(model, values, excitation, signal, &below, &driven.frequency) else {
+fn amplitudes(
+    ratios: &mut Ratios<'_, Evaluator>,
+    excitation: usize,
+    driven: &RunExcitation,
+    signal: &Signal,
+) -> Vec<(String, f64)> {
+    let below = signal_of(ratios.about(), driven.reference);
+    let Ok(ratio) = ratios.ratio(excitation, [signal, &below], &driven.frequency) else {
         return vec![];
     };
     let lines = ratio.value.iter().zip(&driven.amplitude).zip(&driven.frequency);

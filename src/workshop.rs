@@ -7,6 +7,7 @@ use qcar_dsl::check::Checked;
 use qcar_dsl::compile::{derive, derive_alone};
 use qcar_dsl::difference::moves_alike;
 use qcar_dsl::patch::{NewParameter, Patch, Patched, Signal};
+use qcar_dsl::response::Wanted;
 use qcar_machine::Machine;
 use qcar_runtime::campaign::{Axis, Campaign, Parameter, Test};
 use qcar_runtime::discover::Evidence;
@@ -81,7 +82,7 @@ impl Bench {
     /// # Errors
     /// Fails if the model cannot be read or does not compile.
     pub fn of_campaign(campaign: &Campaign, model: Option<&str>) -> Result<Self, Failure> {
-        let compiled = catalogue::compiled_of_campaign(campaign, model)?;
+        let compiled = catalogue::compiled_of_campaign(campaign, model, Wanted::Nothing)?;
         let vehicle = campaign.vehicle.iter().cloned();
         let values: BTreeMap<String, f64> = vehicle
             .chain(campaign.parameters.iter().map(|p| (p.name.clone(), p.value)))

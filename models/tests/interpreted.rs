@@ -1,6 +1,7 @@
 //! Generated code and the run-time evaluator give the same bits, on random parameters, states and inputs.
 
 use std::path::Path;
+use std::sync::LazyLock;
 
 use proptest::prelude::*;
 use qcar_dsl::disk::compile_file;
@@ -54,13 +55,21 @@ proptest! {
 
     #[test]
     fn generated_and_interpreted_are_equal(numbers in prop::collection::vec(-1.0..1.0f64, 256)) {
-        for (file, model) in all() {
-            let compiled = compile_file(Path::new(""), &file).unwrap().compiled.unwrap();
-            let pair = Pair { model, evaluator: Evaluator::new(&compiled) };
-            pair.compare(&numbers);
-        }
+        PAIRS.iter().for_each(|pair| pair.compare(&numbers));
     }
 }
+
+/// Every model, compiled once for all cases.
+static PAIRS: LazyLock<Vec<Pair>> = LazyLock::new(|| {
+    let pair = |(file, model): (String, &'static dyn Model)| {
+        let compiled = compile_file(Path::new(""), &file).unwrap().compiled.unwrap();
+        Pair {
+            model,
+            evaluator: Evaluator::new(&compiled),
+        }
+    };
+    all().into_iter().map(pair).collect()
+});
 
 /// Both ways to run one model.
 struct Pair {

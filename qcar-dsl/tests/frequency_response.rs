@@ -3,10 +3,10 @@
 use nalgebra::Complex;
 use proptest::prelude::*;
 use qcar_dsl::check::Checked;
-use qcar_dsl::compile::derive;
+use qcar_dsl::compile::{derive, derive_wanted};
 use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::model::{CoordinateKind, Quantity, Signal, Term};
-use qcar_dsl::response::sources;
+use qcar_dsl::response::{Wanted, sources};
 use qcar_model::{Model as _, ResponseMut};
 
 use super::common::random::{large_plan, plan};
@@ -173,6 +173,25 @@ proptest! {
     fn large_models_respond_as_their_matrices_say(plan in large_plan(), omega in 0.1..3.0f64) {
         let (model, p) = plan.build_with_groups();
         judge_some(model, &p, &[omega], 1e-3, 1.0);
+    }
+
+    /// The derivatives of two outputs come from a solution for each, those of all outputs from the inverse.
+    #[test]
+    fn derivatives_of_some_outputs_are_those_of_all(plan in large_plan(), omega in 0.1..3.0f64) {
+        let (model, p) = plan.build_with_groups();
+        let wanted = [0, model.outputs.len() - 1];
+        let some = derive_wanted(model.clone(), Wanted::JacobianOf(&wanted.map(|output| output as u16)));
+        let [some, all] = [some, derive(model)].map(|own| evaluate(&Evaluator::new(&own), 0, &p, &[omega]));
+        let largest = all.value.iter().fold(1.0_f64, |most, row| most.max(row[0].norm()));
+        for (y, slopes) in some.slope.iter().enumerate() {
+            assert_close("response", &parts(&some.value[y]), &parts(&all.value[y]), 1e-9, 1e-4 * largest);
+            let (found, expected) = (slopes.concat(), all.slope[y].concat());
+            if wanted.contains(&y) {
+                assert_close("its slopes", &parts(&found), &parts(&expected), 1e-9, 1e-3 * largest * largest);
+            } else {
+                prop_assert!(found.iter().all(|slope| slope.norm() == 0.0));
+            }
+        }
     }
 }
 

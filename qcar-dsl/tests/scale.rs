@@ -5,6 +5,7 @@
 #[allow(dead_code, reason = "the example measures times")]
 mod chain;
 
+use qcar_dsl::c;
 use qcar_dsl::check::check_text;
 use qcar_dsl::compile::{check, derive_wanted};
 use qcar_dsl::response::Wanted;
@@ -40,7 +41,11 @@ fn counts(of: &Compiled, shown: &[Stage]) -> Vec<(String, usize)> {
 }
 
 fn grows_as_the_length(own: bool, wanted: Wanted, shown: &[Stage]) {
-    let counted = |masses| counts(&compiled(masses, own, wanted), shown);
+    grow_as_the_length(|masses| counts(&compiled(masses, own, wanted), shown));
+}
+
+/// What is counted for a number of masses, by its name.
+fn grow_as_the_length(counted: impl Fn(usize) -> Vec<(String, usize)>) {
     for lengths in [(10, 80), (40, 80)] {
         let most = (lengths.1 as f64 / lengths.0 as f64).powf(1.2);
         for ((what, few), (_, many)) in counted(lengths.0).into_iter().zip(counted(lengths.1)) {
@@ -62,6 +67,28 @@ fn a_chain_of_equal_members_grows_as_its_length() {
 fn a_chain_of_many_parameters_grows_as_its_length_without_its_jacobian() {
     let shown = Stage::ALL.into_iter().filter(|stage| *stage != Stage::Rust);
     grows_as_the_length(true, Wanted::Values, &shown.collect::<Vec<_>>());
+}
+
+/// The derivatives of three measured outputs by the parameters of all members, which a fit needs.
+#[test]
+fn the_jacobian_of_few_outputs_grows_as_the_length() {
+    grow_as_the_length(|masses| {
+        let measured = [0, masses as u16 / 2, masses as u16 - 1];
+        let compiled = compiled(masses, true, Wanted::JacobianOf(&measured));
+        counts(&compiled, &[])
+    });
+}
+
+/// C99 for a simulation has no frequency response.
+#[test]
+fn the_c99_of_a_simulation_grows_as_the_length() {
+    grow_as_the_length(|masses| {
+        let compiled = compiled(masses, true, Wanted::Nothing);
+        let values = vec![1.0; compiled.about.parameters.len()];
+        let c::Sources { header, source } = c::sources(&compiled, &values, "chain");
+        assert!(!source.contains("_response_"));
+        vec![("header".into(), header.len()), ("source".into(), source.len())]
+    });
 }
 
 /// The values are the same operations, whether derivatives are wanted or not.

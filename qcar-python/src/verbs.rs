@@ -10,6 +10,7 @@ use qcar::catalogue;
 use qcar::failure::Failure;
 use qcar::parameters::{self, FileExtras, Setting};
 use qcar::verbs::{discover, fit, simulate};
+use qcar_dsl::response::Wanted;
 use qcar_runtime::campaign::{Campaign, Role};
 use qcar_runtime::discover::numbers::Numbers;
 
@@ -70,7 +71,7 @@ pub fn fit_campaign<'py>(
 /// # Errors
 /// Fails for a nonlinear model, whose transmissibilities hold for one level only.
 fn refuse_nonlinear(campaign: &Path, model: Option<&str>) -> Result<(), Failure> {
-    let model = catalogue::of_campaign(&Campaign::open(campaign)?, model)?;
+    let model = catalogue::of_campaign(&Campaign::open(campaign)?, model, Wanted::Nothing)?;
     let about = model.about();
     let refused = || {
         let sentence = "is nonlinear, and this fit is to transmissibilities of a linear one; fit it with `qcar fit`, or ask `discover`";

@@ -4,9 +4,10 @@ use nalgebra::Complex;
 use qcar_runtime::model::{Default, Model, Quantity, Signal, SignalKind};
 use qcar_runtime::response::Response;
 use qcar_runtime::response::parameters::{ParameterError, Values};
-use qcar_runtime::response::ratio::{Ratio, ratio};
+use qcar_runtime::response::ratio::{Ratio, Ratios, ratio};
 use qcar_runtime::response::signal::{SignalError, locate};
 use std::collections::BTreeMap;
+use std::sync::atomic::Ordering::Relaxed;
 
 use super::support::{self, Assembled, CHAIN, acceleration, chain};
 
@@ -49,6 +50,24 @@ fn ratios_from_the_pad_and_between_masses_are_those_of_the_closed_form() {
             assert_near(pad_to_body.value[line], h[0] / (-omega * omega), 1e-11);
             assert_near(body_to_pwt.value[line], h[2] / h[0], 1e-11);
         }
+    }
+}
+
+/// However many signals are asked for: a response has all of them.
+#[test]
+fn ratios_at_the_same_frequencies_share_one_response() {
+    let [chain, other] = [chain(true), chain(true)];
+    let [values, other_values] = [values(&chain), values(&other)];
+    let mut ratios = Ratios::new(&chain, &values);
+    let pad = acceleration("pad");
+    for (frequencies, computed) in [(&FREQUENCIES[..], 1), (&FREQUENCIES[1..], 2)] {
+        for location in ["wheel", "body", "pwt"] {
+            let signals = [&acceleration(location), &pad];
+            let shared = ratios.ratio(0, signals, frequencies).unwrap();
+            let alone = ratio(&other, &other_values, 0, signals[0], signals[1], frequencies).unwrap();
+            assert!(shared.value == alone.value && shared.jacobian.is_empty(), "{location}");
+        }
+        assert_eq!(chain.responses.load(Relaxed), computed);
     }
 }
 

@@ -2,15 +2,14 @@
 
 use std::path::Path;
 
-use clap::Args;
-use clap_complete::engine::ArgValueCompleter;
-use qcar_dsl::resolve::options::Choices;
-use qcar_dsl::response::Wanted;
-
 use crate::catalogue;
 use crate::completion;
 use crate::failure::Failure;
 use crate::terminal::prose;
+use clap::Args;
+use clap_complete::engine::ArgValueCompleter;
+use qcar_dsl::resolve::options::Choices;
+use qcar_dsl::response::Wanted;
 
 // Checks of a campaign.
 mod campaign;

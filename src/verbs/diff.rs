@@ -3,6 +3,7 @@
 use clap::Args;
 use clap_complete::engine::ArgValueCompleter;
 use qcar_dsl::difference::{Difference, LineChange, difference};
+use qcar_dsl::response::Wanted;
 use serde::Serialize;
 
 use crate::catalogue;
@@ -50,8 +51,8 @@ impl Change<'_> {
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let (first, second) = (
-        catalogue::compiled(&arguments.first)?,
-        catalogue::compiled(&arguments.second)?,
+        catalogue::compiled_wanted(&arguments.first, Wanted::Nothing)?,
+        catalogue::compiled_wanted(&arguments.second, Wanted::Nothing)?,
     );
     let difference = difference(&first.model, &second.model);
     Ok(match arguments.format {

@@ -15,6 +15,7 @@ use crate::table::Table;
 use crate::terminal::prose;
 use crate::verbs::Format;
 use description::EffectDescription;
+use qcar_dsl::response::Wanted;
 
 /// List the effects that a model may lack, and where each applies
 ///
@@ -70,7 +71,7 @@ struct Applies {
 }
 
 fn places(model: &str, format: Format) -> Result<String, Failure> {
-    let compiled = catalogue::compiled(model)?;
+    let compiled = catalogue::compiled_wanted(model, Wanted::Nothing)?;
     let all = effects::all()?;
     let applies = all.iter().map(|patch| Applies {
         name: patch.effect().name.text.clone(),

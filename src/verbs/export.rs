@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use qcar_dsl::modelica;
+use qcar_dsl::response::Wanted;
 use qcar_dsl::show::{Stage, show};
 use qcar_runtime::response::parameters::Values;
 
@@ -107,6 +108,14 @@ impl Kind {
             Kind::Latex => "tex",
         }
     }
+
+    /// What it prints of responses: only code for calling has functions of them.
+    fn wants(self) -> Wanted<'static> {
+        match self {
+            Kind::C | Kind::Js => Wanted::Jacobian,
+            _ => Wanted::Nothing,
+        }
+    }
 }
 
 /// Runs the verb.
@@ -114,8 +123,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let stem = stem(&arguments.out, arguments.kind.extension())?;
     let version = version(arguments)?;
     let ModelArguments { model, params, set } = &arguments.model;
-    let compiled = catalogue::compiled(model)?;
-    let loaded = catalogue::load(model)?;
+    let (loaded, compiled) = catalogue::load_and_compile(model, arguments.kind.wants())?;
     let values = parameters::resolve(loaded.about(), params.as_deref(), set)?;
     loaded.check_inertias(values.as_slice())?;
     let subject = Subject {

@@ -8,11 +8,12 @@ use clap::Args;
 use clap_complete::engine::ArgValueCompleter;
 use nalgebra::Complex;
 use qcar_dsl::check::Unseen;
+use qcar_dsl::response::Wanted;
 use qcar_runtime::campaign::{Campaign, Role, Test};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::fit::bootstrap::Bootstrap;
 use qcar_runtime::fit::measure::levels;
-use qcar_runtime::fit::observation::Observation;
+use qcar_runtime::fit::observation::{Observation, outputs};
 use qcar_runtime::fit::profile::ParameterProfile;
 use qcar_runtime::fit::report::ParameterFit;
 use qcar_runtime::fit::{Fit, Level, Plan, Setup};
@@ -117,7 +118,7 @@ impl Choices {
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let campaign = Campaign::open(&arguments.campaign)?;
-    let model = catalogue::of_campaign(&campaign, arguments.choices.model.as_deref())?;
+    let model = catalogue::of_campaign(&campaign, arguments.choices.model.as_deref(), Wanted::Values)?;
     if let Some(folder) = &arguments.out {
         files::check_folder(folder, &campaign.name, &model.about().name)?;
     }
@@ -154,7 +155,7 @@ pub(crate) fn is_by_transmissibilities(campaign: &Campaign, about: &About, choic
 pub struct Fitted {
     /// The campaign.
     pub campaign: Campaign,
-    /// The fitted model.
+    /// The fitted model; if it is a file, with derivatives of the measured signals only.
     pub model: Loaded,
     /// The measured ratios.
     pub levels: Vec<Level>,
@@ -244,7 +245,7 @@ impl Fitted {
 pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failure> {
     let begun = Instant::now();
     let mut campaign = Campaign::open(folder)?;
-    let model = catalogue::of_campaign(&campaign, choices.model.as_deref())?;
+    let model = catalogue::of_campaign(&campaign, choices.model.as_deref(), Wanted::Values)?;
     let plan = plan(&campaign, model.about(), choices)?;
     refuse_unseen(&model, &plan)?;
     let channels = each_once(choices.channels.iter().cloned());
@@ -252,6 +253,9 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
     let measure =
         |on_progress: OnProgress<'_>| levels(&campaign, model.about(), wanted, &Options::default(), on_progress);
     let levels = while_counting(format!("{}: transmissibilities of run", campaign.name), measure)?;
+    let measured = outputs(model.about(), &levels);
+    let wanted = Wanted::JacobianOf(&measured);
+    let model = catalogue::of_campaign(&campaign, choices.model.as_deref(), wanted)?;
     let setup = Setup::new(&*model, &plan, &levels)?;
     model.check_inertias(setup.values())?;
     campaign.notices.extend(notices::silent_runs(&campaign, &levels));

@@ -182,7 +182,7 @@ struct ExcitedModel<'a> {
     model: &'a dyn Model,
     values: &'a Values,
     frequency: &'a [f64],
-    wanted: Wanted,
+    wanted: Wanted<'static>,
     responses: BTreeMap<usize, Response<'a, dyn Model + 'a>>,
 }
 
@@ -213,9 +213,10 @@ impl<'a> ExcitedModel<'a> {
         let (model, values, frequency, wanted) = (self.model, self.values, self.frequency, self.wanted);
         self.responses.entry(excitation).or_insert_with(|| {
             let mut response = Response::new(model, excitation, frequency);
-            match wanted {
-                Wanted::Values => response.evaluate_values(values.as_slice()),
-                Wanted::Jacobian => response.evaluate(values.as_slice()),
+            if wanted == Wanted::Jacobian {
+                response.evaluate(values.as_slice());
+            } else {
+                response.evaluate_values(values.as_slice());
             }
             response
         })

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use qcar_dsl::response::Wanted;
 use qcar_runtime::campaign::{Campaign, Run, Test};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::kc::{self, Estimate, KcError, SineSamples, Slope, cycle, sines};
@@ -205,7 +206,7 @@ fn gradient(
 /// The model of the campaign with its start values, or why there is none. Curves can be read without a model.
 fn model(campaign: &Campaign) -> Result<(Loaded, Values), String> {
     let refused = |failure: Failure| failure.to_string().trim_end().to_string();
-    let model = catalogue::of_campaign(campaign, None).map_err(refused)?;
+    let model = catalogue::of_campaign(campaign, None, Wanted::Values).map_err(refused)?;
     let values = parameters::resolve(model.about(), [campaign.manifest().as_path()], &[]);
     let values = values.map_err(|error| refused(error.into()))?;
     model

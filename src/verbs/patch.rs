@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap_complete::engine::ArgValueCompleter;
+use qcar_dsl::response::Wanted;
 
 use super::ModelArguments;
 use crate::catalogue;
@@ -44,7 +45,7 @@ const NO_EVIDENCE: &str = "Evidence: none yet.";
 
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
-    let compiled = catalogue::compiled(&arguments.model.model)?;
+    let compiled = catalogue::compiled_wanted(&arguments.model.model, Wanted::Nothing)?;
     let values = parameters::given(arguments.model.params.as_deref(), &arguments.model.set)?;
     let patched = effects::find(&arguments.effect, arguments.form.as_deref())?
         .apply(&compiled.model, &arguments.at, &|name| values.get(name).copied())

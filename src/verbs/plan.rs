@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap_complete::engine::ArgValueCompleter;
+use qcar_dsl::response::Wanted;
 use qcar_runtime::campaign::Campaign;
 use qcar_runtime::discover::candidate::Workshop;
 use qcar_runtime::discover::posterior;
@@ -14,7 +15,7 @@ use qcar_runtime::response::parameters::Values;
 use qcar_runtime::spelling;
 use serde::Serialize;
 
-use crate::catalogue;
+use crate::catalogue::{self, Loaded};
 use crate::completion;
 use crate::failure::{Failure, flag};
 use crate::json::{self, Ordered};
@@ -93,7 +94,7 @@ struct CandidateMeasurement {
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let campaign = Campaign::open(&arguments.campaign)?;
-    let model = catalogue::of_campaign(&campaign, arguments.model.as_deref())?;
+    let model = catalogue::of_campaign(&campaign, arguments.model.as_deref(), Wanted::Jacobian)?;
     let choices = Choices {
         model: arguments.model.clone(),
         free: arguments.free.clone(),
@@ -102,7 +103,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         ..Choices::default()
     };
     let planned = match fit::is_by_transmissibilities(&campaign, model.about(), &choices) {
-        true => of_channels(arguments, &choices)?,
+        true => of_channels(&model, arguments, &choices)?,
         false => of_runs(campaign, arguments, &choices)?,
     };
     Ok(match arguments.format {
@@ -111,8 +112,8 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     })
 }
 
-/// Candidates for a fit to transmissibilities.
-fn of_channels(arguments: &Arguments, choices: &Choices) -> Result<Planned, Failure> {
+/// Candidates for a fit to transmissibilities. A sensor may be added anywhere, so `model` has the derivatives of all outputs.
+fn of_channels(model: &Loaded, arguments: &Arguments, choices: &Choices) -> Result<Planned, Failure> {
     let fitted = fit::fit(&arguments.campaign, choices)?;
     let plan = fitted.as_plan(choices)?;
     let names: Vec<&str> = plan
@@ -123,13 +124,7 @@ fn of_channels(arguments: &Arguments, choices: &Choices) -> Result<Planned, Fail
         .collect();
     check_names(&names, &arguments.parameters)?;
     let found = while_counting(work(&fitted.campaign), |on_progress| {
-        expected_gains(
-            &*fitted.model,
-            &plan,
-            &fitted.levels,
-            &arguments.parameters,
-            on_progress,
-        )
+        expected_gains(&**model, &plan, &fitted.levels, &arguments.parameters, on_progress)
     })?;
     let (about, values) = (fitted.model.about(), fitted.values());
     Ok(planned(

@@ -56,7 +56,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
 
 impl Stage {
     /// Only the generated module shows derivatives of responses.
-    fn wants(self) -> Wanted {
+    fn wants(self) -> Wanted<'static> {
         match self {
             Stage::Rust => Wanted::Jacobian,
             _ => Wanted::Values,

@@ -35,6 +35,7 @@ mod spectra;
 mod ground;
 
 use comparison::Compared;
+use qcar_dsl::response::Wanted;
 use records::Record;
 
 /// Simulate the runs of a campaign and compare them with the measurement
@@ -146,7 +147,7 @@ struct Opened {
 
 fn open(campaign: &Path, choices: &Choices) -> Result<Opened, Failure> {
     let campaign = Campaign::open(campaign)?;
-    let model = catalogue::of_campaign(&campaign, choices.model.as_deref())?;
+    let model = catalogue::of_campaign(&campaign, choices.model.as_deref(), Wanted::Values)?;
     let manifest = campaign.manifest();
     let files = std::iter::once(manifest.as_path()).chain(choices.params.as_deref());
     let values = parameters::resolve(model.about(), files, &choices.set)?;

@@ -8,6 +8,10 @@ use std::process::Command;
 /// How wide a terminal its text is for.
 pub const COLUMNS: usize = 100;
 
+/// The line that [`Studied::targets`] runs once for all tests, as users are told to write it.
+#[allow(dead_code, reason = "not every test program runs the lines that users are told")]
+pub const TARGETS: &str = "target models/targets/axle_a.toml --out results";
+
 /// A shipped campaign studied, or targets met.
 pub struct Studied {
     /// The folder of its results.

@@ -44,15 +44,33 @@ pub struct Response {
 
 /// Wanted parts of a response.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Wanted {
+pub enum Wanted<'a> {
+    /// No response.
+    Nothing,
     /// Values only, without the Jacobian.
     Values,
+    /// Values of all outputs, and the derivatives of those at these places by the parameters.
+    JacobianOf(&'a [u16]),
     /// Values and derivatives by the parameters.
     Jacobian,
 }
 
+impl Wanted<'_> {
+    /// True if the derivatives of an output by the parameters are wanted.
+    fn has_jacobian_of(self, output: u16) -> bool {
+        match self {
+            Wanted::Nothing | Wanted::Values => false,
+            Wanted::JacobianOf(outputs) => outputs.contains(&output),
+            Wanted::Jacobian => true,
+        }
+    }
+}
+
 /// The response of a linear model to each of its excitations.
 pub fn responses(model: &Checked, graph: &mut Graph, wanted: Wanted) -> Vec<Response> {
+    if wanted == Wanted::Nothing {
+        return Vec::new();
+    }
     let system = System::assemble(model, graph, wanted);
     sources(model)
         .into_iter()
@@ -89,18 +107,19 @@ struct System<'a> {
     loads: Vec<Load>,
     /// Changes by each parameter; empty if no derivatives are wanted.
     changes: Vec<Change>,
+    wanted: Wanted<'a>,
 }
 
 impl<'a> System<'a> {
-    fn assemble(model: &'a Checked, g: &mut Graph, wanted: Wanted) -> Self {
+    fn assemble(model: &'a Checked, g: &mut Graph, wanted: Wanted<'a>) -> Self {
         let links = (0..model.links.len()).map(|l| stiffness::of_link(model, g, LinkId(l as u16)));
         let links: Vec<Stiffness> = links.collect();
         let impedance = impedance(model, g, &links);
-        let parameters = match wanted {
-            Wanted::Values => 0,
-            Wanted::Jacobian => model.parameters.len(),
-        };
-        let compliance = Compliance::of(model, g, &impedance, parameters > model.outputs.len());
+        let outputs = 0..model.outputs.len() as u16;
+        let differentiated = outputs.filter(|&output| wanted.has_jacobian_of(output)).count();
+        let parameters = if differentiated == 0 { 0 } else { model.parameters.len() };
+        let adjoints = if parameters > differentiated { differentiated } else { 0 };
+        let compliance = Compliance::of(model, g, &impedance, adjoints);
         let loads: Vec<Load> = (0..model.forces.len())
             .map(|i| load(model, g, &links, i as u16))
             .collect();
@@ -114,6 +133,7 @@ impl<'a> System<'a> {
             compliance,
             loads,
             changes,
+            wanted,
         }
     }
 
@@ -133,11 +153,15 @@ impl<'a> System<'a> {
             if value.is_zero(g) {
                 continue;
             }
-            let adjoint = match self.changes.as_slice() {
+            let changes = match self.wanted.has_jacobian_of(y as u16) {
+                true => self.changes.as_slice(),
+                false => &[],
+            };
+            let adjoint = match changes {
                 [] => None,
                 _ => self.compliance.adjoint(g, &functional.combination),
             };
-            for (p, change) in self.changes.iter().enumerate() {
+            for (p, change) in changes.iter().enumerate() {
                 let indirect = match &adjoint {
                     Some(adjoint) => self.by_adjoint(g, source, &functional, adjoint, &scaled, change),
                     None => along(g, &functional.combination, &moved[p]).mul(g, functional.factor),

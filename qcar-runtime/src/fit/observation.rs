@@ -1,8 +1,10 @@
 //! Observations of a fit: measured ratios over frequency, run by run.
 
 use crate::campaign::Role;
-use crate::model::Channel;
+use crate::model::{About, Channel};
+use crate::response::signal::output_of;
 use nalgebra::Complex;
+use std::collections::BTreeSet;
 
 /// The ratios measured in one run, all under one excitation.
 #[derive(Clone, Debug)]
@@ -38,6 +40,14 @@ pub struct Observation {
     pub sensors: (usize, usize),
     /// Differences between the sensors of each pair.
     pub differences: Vec<Difference>,
+}
+
+/// Positions of the outputs from which the observed signals follow; an excitation may be none of them.
+pub fn outputs(about: &About, levels: &[Level]) -> Vec<u16> {
+    let observed = levels.iter().flat_map(|level| &level.observations);
+    let signals = observed.flat_map(|own| [&own.channel.numerator, &own.channel.denominator]);
+    let places = signals.filter_map(|signal| Some(output_of(about, signal).ok()?.0 as u16));
+    places.collect::<BTreeSet<u16>>().into_iter().collect()
 }
 
 impl Observation {

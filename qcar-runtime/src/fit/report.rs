@@ -10,7 +10,7 @@ use crate::least_squares::Stop;
 use crate::least_squares::information::Unseen;
 use crate::model::Model;
 use crate::response::parameters::Values;
-use crate::response::ratio::ratio;
+use crate::response::ratio::Ratios;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -278,12 +278,12 @@ fn why<M: Model + ?Sized>(
 
 fn channels<M: Model + ?Sized>(setup: &Setup<'_, M>, values: &Values) -> Vec<ChannelFit> {
     let mut channels = Vec::new();
+    let mut ratios = Ratios::new(setup.model, values);
     for level in setup.levels {
         for observation in &level.observations {
             let channel = &observation.channel;
             let lines = &observation.frequency;
-            let (above, below) = (&channel.numerator, &channel.denominator);
-            let model = ratio(setup.model, values, level.excitation, above, below, lines);
+            let model = ratios.ratio(level.excitation, [&channel.numerator, &channel.denominator], lines);
             let model = model.expect("the setup has found both signals").value;
             channels.push(ChannelFit {
                 name: channel.name.to_string(),

@@ -9,7 +9,7 @@ use super::record::{Record, between};
 use crate::model::{Channel, Model, Quantity, Signal, SignalKind};
 use crate::random::SplitMix;
 use crate::response::parameters::Values;
-use crate::response::ratio::ratio;
+use crate::response::ratio::Ratios;
 use nalgebra::Complex;
 
 /// A run as the fitted model predicts it.
@@ -102,7 +102,7 @@ impl<'a, M: Model + ?Sized> Run<'a, M> {
 
     fn response(&self, signal: &Signal, frequency: &[f64]) -> Option<Vec<Complex<f64>>> {
         let excitation = self.level.excitation;
-        let found = ratio(self.model, self.values, excitation, signal, &self.source, frequency);
+        let found = Ratios::new(self.model, self.values).ratio(excitation, [signal, &self.source], frequency);
         found.ok().map(|found| found.value)
     }
 

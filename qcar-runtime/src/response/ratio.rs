@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::Response;
 use super::parameters::Values;
 use super::signal::{SignalError, Term, locate};
-use crate::model::{Model, Signal};
+use crate::model::{About, Model, Signal};
 use nalgebra::Complex;
 
 /// A ratio of two signals over frequency.
@@ -18,7 +18,7 @@ pub struct Ratio {
     pub jacobian: Vec<(usize, Vec<Complex<f64>>)>,
 }
 
-/// The ratio of two signals when `excitation` alone acts, at `frequency` (Hz, above zero).
+/// The ratio of two signals when `excitation` alone acts, at `frequency` (Hz, above zero), with its derivatives.
 ///
 /// # Errors
 /// Fails if the model cannot give one of the signals.
@@ -30,9 +30,80 @@ pub fn ratio<M: Model + ?Sized>(
     denominator: &Signal,
     frequency: &[f64],
 ) -> Result<Ratio, SignalError> {
-    let mut response = Response::new(model, excitation, frequency);
-    response.evaluate(values.as_slice());
-    between(&response, values, numerator, denominator)
+    Ratios::with_derivatives(model, values).ratio(excitation, [numerator, denominator], frequency)
+}
+
+/// Ratios of a model at parameter values. A response has all signals of the model, so it is evaluated once for all ratios that are
+/// asked for in turn under one excitation at the same frequencies.
+pub struct Ratios<'a, M: ?Sized> {
+    model: &'a M,
+    values: &'a Values,
+    with_derivatives: bool,
+    last: Option<Evaluated<'a, M>>,
+}
+
+/// A response that has been evaluated at these frequencies, Hz.
+struct Evaluated<'a, M: ?Sized> {
+    frequency: Vec<f64>,
+    response: Response<'a, M>,
+}
+
+impl<'a, M: Model + ?Sized> Ratios<'a, M> {
+    /// Ratios without derivatives.
+    pub fn new(model: &'a M, values: &'a Values) -> Self {
+        Self {
+            model,
+            values,
+            with_derivatives: false,
+            last: None,
+        }
+    }
+
+    /// Ratios with derivatives by the parameters.
+    pub fn with_derivatives(model: &'a M, values: &'a Values) -> Self {
+        Self {
+            with_derivatives: true,
+            ..Self::new(model, values)
+        }
+    }
+
+    /// The description of the model.
+    pub fn about(&self) -> &'a About {
+        self.model.about()
+    }
+
+    /// The ratio of two signals when `excitation` alone acts, at `frequency` (Hz, above zero).
+    ///
+    /// # Errors
+    /// Fails if the model cannot give one of the signals.
+    pub fn ratio(
+        &mut self,
+        excitation: usize,
+        [numerator, denominator]: [&Signal; 2],
+        frequency: &[f64],
+    ) -> Result<Ratio, SignalError> {
+        let is_same = |last: &Evaluated<'_, M>| last.response.excitation == excitation && last.frequency == frequency;
+        let last = match self.last.take().filter(is_same) {
+            Some(last) => last,
+            None => self.evaluated(excitation, frequency),
+        };
+        let ratio = between(&last.response, self.values, numerator, denominator);
+        self.last = Some(last);
+        ratio
+    }
+
+    fn evaluated(&self, excitation: usize, frequency: &[f64]) -> Evaluated<'a, M> {
+        let mut response = Response::new(self.model, excitation, frequency);
+        if self.with_derivatives {
+            response.evaluate(self.values.as_slice());
+        } else {
+            response.evaluate_values(self.values.as_slice());
+        }
+        Evaluated {
+            frequency: frequency.to_vec(),
+            response,
+        }
+    }
 }
 
 /// The ratio of two signals of an evaluated response; without derivatives if the response has none.

@@ -127,10 +127,10 @@ fn swept<'a>(side: &'a Side, campaign: &Campaign) -> Result<LevelResponses<'a>, 
 /// Channels that both models have, without measurements, at these frequencies (Hz).
 pub(super) fn modelled(sides: &[Side; 2], frequency: &[f64]) -> Vec<Ratio> {
     let [a, b] = sides.each_ref().map(|side| side.model.about());
-    let models = at_rest(sides);
+    let mut models = at_rest(sides);
     let is_of_b = |own: &&Channel| b.channels.iter().any(|other| other.name == own.name);
     let ratio = |channel: &Channel| {
-        let value = |side: usize, about| {
+        let mut value = |side: usize, about| {
             let excitation = frf::excitation(about, channel).ok()?;
             models[side].ratio("", excitation, channel, frequency)
         };
@@ -147,7 +147,7 @@ pub(super) fn of_campaign(sides: &[Side; 2], campaign: &Campaign) -> Result<Vec<
     let about = sides[0].model.about();
     let measure = |on_progress: OnProgress<'_>| levels(campaign, about, None, &Options::default(), on_progress);
     let levels = while_counting(format!("{}: transmissibilities of run", campaign.name), measure)?;
-    let models = [swept(&sides[0], campaign)?, swept(&sides[1], campaign)?];
+    let mut models = [swept(&sides[0], campaign)?, swept(&sides[1], campaign)?];
     let [first, second] = sides.each_ref().map(|side| &side.model.about().excitations);
     let mut ratios = Vec::new();
     for level in &levels {
@@ -156,7 +156,7 @@ pub(super) fn of_campaign(sides: &[Side; 2], campaign: &Campaign) -> Result<Vec<
             continue;
         };
         let runs = [(level.name.as_str(), level.excitation), (level.name.as_str(), same)];
-        let ratio = |own: &Observation| in_run(&models, level, runs, own, None);
+        let ratio = |own: &Observation| in_run(&mut models, level, runs, own, None);
         ratios.extend(level.observations.iter().filter_map(ratio));
     }
     Ok(ratios)
@@ -167,7 +167,7 @@ pub(super) fn of_campaign(sides: &[Side; 2], campaign: &Campaign) -> Result<Vec<
 /// # Errors
 /// Fails if a run cannot be read.
 pub(super) fn of_campaigns(sides: &[Side; 2], [a, b]: [&Measured; 2]) -> Result<Vec<Ratio>, InputError> {
-    let models = [swept(&sides[0], &a.campaign)?, swept(&sides[1], &b.campaign)?];
+    let mut models = [swept(&sides[0], &a.campaign)?, swept(&sides[1], &b.campaign)?];
     let mut ratios = Vec::new();
     for level in &a.levels {
         let mut others = b.levels.iter();
@@ -181,7 +181,7 @@ pub(super) fn of_campaigns(sides: &[Side; 2], [a, b]: [&Measured; 2]) -> Result<
         for own in &level.observations {
             let mut others = other.observations.iter();
             if let Some(second) = others.find(|second| second.channel.name == own.channel.name) {
-                ratios.extend(in_run(&models, level, runs, own, Some(second)));
+                ratios.extend(in_run(&mut models, level, runs, own, Some(second)));
             }
         }
     }
@@ -203,13 +203,13 @@ fn alike(a: &Campaign, first: &Level, b: &Campaign, second: &Level) -> bool {
 
 /// A channel of a run of A and of a run of B, each run with its excitation.
 fn in_run(
-    models: &[LevelResponses; 2],
+    models: &mut [LevelResponses; 2],
     level: &Level,
     runs: [(&str, usize); 2],
     own: &Observation,
     other: Option<&Observation>,
 ) -> Option<Ratio> {
-    let value = |side: usize| models[side].ratio(runs[side].0, runs[side].1, &own.channel, &own.frequency);
+    let mut value = |side: usize| models[side].ratio(runs[side].0, runs[side].1, &own.channel, &own.frequency);
     let ratio = together(&own.channel, &own.frequency, [value(0)?, value(1)?], [Some(own), other]);
     Some(Ratio {
         run: Some(level.name.clone()),

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use qcar_dsl::response::Wanted;
 use qcar_dsl::schedule::Compiled;
 use qcar_runtime::campaign::{Campaign, Role, Test};
 use qcar_runtime::fit::Level;
@@ -96,14 +97,14 @@ fn sets(files: [&PathBuf; 2], arguments: &Arguments) -> Result<[Side; 2], Failur
     let beside = [FileExtras::read(files[0])?, FileExtras::read(files[1])?];
     let model = model_of_sets(&beside, arguments)?;
     let side = |file: &PathBuf, beside: &FileExtras| {
-        let loaded = catalogue::load(&model)?;
+        let (loaded, compiled) = catalogue::load_and_compile(&model, Wanted::Values)?;
         let files: Vec<PathBuf> = common(arguments).into_iter().chain([file.clone()]).collect();
         let paths = files.iter().map(PathBuf::as_path);
         Ok::<_, Failure>(Side {
             name: file.display().to_string(),
             values: parameters::resolve(loaded.about(), paths, &arguments.set)?,
             model: loaded,
-            compiled: catalogue::compiled(&model)?,
+            compiled,
             errors: beside.errors.clone(),
             vehicle: Vehicle::read(&files)?,
             measured: None,
@@ -138,15 +139,16 @@ fn models(names: [&String; 2], arguments: &Arguments) -> Result<[Side; 2], Failu
         let remedy = "leave --model out, or compare parameter files";
         return Err(flag("--model", format!("`{model}`"), "no third model", remedy).into());
     }
-    let [first, second] = [catalogue::load(names[0])?, catalogue::load(names[1])?];
+    let [first, second] = names.map(|name| catalogue::load_and_compile(name, Wanted::Values));
+    let [first, second] = [first?, second?];
     let files = common(arguments);
     let paths = files.iter().map(PathBuf::as_path);
-    let [a, b] = parameters::resolve_both([first.about(), second.about()], paths, &arguments.set)?;
-    let side = |name: &str, model: Loaded, values: Values| {
+    let [a, b] = parameters::resolve_both([first.0.about(), second.0.about()], paths, &arguments.set)?;
+    let side = |name: &str, (model, compiled): (Loaded, Compiled), values: Values| {
         Ok::<_, Failure>(Side {
             name: name.into(),
             model,
-            compiled: catalogue::compiled(name)?,
+            compiled,
             values,
             errors: BTreeMap::new(),
             vehicle: Vehicle::read(&files)?,
@@ -193,7 +195,7 @@ fn campaign(folder: &Path, arguments: &Arguments) -> Result<Side, Failure> {
     Ok(Side {
         name: folder.display().to_string(),
         model,
-        compiled: catalogue::compiled_of_campaign(&campaign, wanted)?,
+        compiled: catalogue::compiled_of_campaign(&campaign, wanted, Wanted::Nothing)?,
         values,
         errors,
         vehicle: Vehicle {
@@ -220,7 +222,7 @@ fn rig(campaign: &Campaign, wanted: Option<&str>) -> Result<Rig, Failure> {
     let is_rig = |test: &Test| matches!(test, Test::Sweep(_) | Test::TimeHistory(_));
     let mut runs = campaign.runs.iter();
     if !runs.any(|run| run.role == Role::Fit && is_rig(&run.test)) {
-        let model = catalogue::of_campaign(campaign, wanted)?;
+        let model = catalogue::of_campaign(campaign, wanted, Wanted::Values)?;
         return Ok(Rig {
             values: parameters::resolve(model.about(), [campaign.manifest().as_path()], &[])?,
             model,

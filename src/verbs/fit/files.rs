@@ -8,8 +8,7 @@ use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::fit::Level;
 use qcar_runtime::fit::observation::Observation;
 use qcar_runtime::fit::report::ParameterFit;
-use qcar_runtime::response::parameters::Values;
-use qcar_runtime::response::ratio::ratio;
+use qcar_runtime::response::ratio::Ratios;
 
 use super::{Fitted, render};
 use crate::figure::{Across, Curve, Figure, Panel, Style};
@@ -91,16 +90,10 @@ pub(crate) struct Compared<'a> {
 /// Every measured ratio with those of the model.
 pub(crate) fn compare(of: &Fitted) -> Vec<Compared<'_>> {
     let (before, after) = (of.start(), of.values());
-    let modelled = |level: &Level, observation: &Observation, values: &Values| {
-        let (above, below) = (&observation.channel.numerator, &observation.channel.denominator);
-        let ratio = ratio(
-            &*of.model,
-            values,
-            level.excitation,
-            above,
-            below,
-            &observation.frequency,
-        );
+    let [mut first, mut last] = [&before, &after].map(|values| Ratios::new(&*of.model, values));
+    let modelled = |ratios: &mut Ratios<'_, _>, level: &Level, observation: &Observation| {
+        let signals = [&observation.channel.numerator, &observation.channel.denominator];
+        let ratio = ratios.ratio(level.excitation, signals, &observation.frequency);
         ratio.expect("the fit has found both signals").value
     };
     let all = of
@@ -110,8 +103,8 @@ pub(crate) fn compare(of: &Fitted) -> Vec<Compared<'_>> {
     all.map(|(level, observation)| Compared {
         level,
         observation,
-        before: modelled(level, observation, &before),
-        after: modelled(level, observation, &after),
+        before: modelled(&mut first, level, observation),
+        after: modelled(&mut last, level, observation),
     })
     .collect()
 }

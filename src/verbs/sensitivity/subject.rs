@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use qcar_dsl::response::Wanted;
 use qcar_runtime::campaign::{Campaign, Role, RoleNames, Test};
 use qcar_runtime::metric::{Course, Ground};
 use qcar_runtime::response::parameters::Values;
@@ -170,7 +171,7 @@ fn resolved(
 ) -> Result<Values, Failure> {
     let paths = files.iter().map(PathBuf::as_path);
     let own = campaign
-        .map(|campaign| catalogue::of_campaign(campaign, None))
+        .map(|campaign| catalogue::of_campaign(campaign, None, Wanted::Nothing))
         .transpose()?;
     let other = own.filter(|own| own.about().name != model.about().name);
     Ok(match other {

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
+use qcar_dsl::response::Wanted;
 use qcar_dsl::schedule::Compiled;
 use qcar_runtime::campaign::{Campaign, Test};
 use qcar_runtime::discover::numbers::Numbers;
@@ -81,7 +82,7 @@ pub fn gather(folder: &Path, model: Option<&str>, out: &Path) -> Result<Study, F
     let after = after(campaign, &answer)?;
     let track = track(&fitted, after.as_ref(), out)?;
     Ok(Study {
-        compiled: catalogue::compiled_of_campaign(campaign, model)?,
+        compiled: catalogue::compiled_of_campaign(campaign, model, Wanted::Jacobian)?,
         seconds: begun.elapsed().as_secs_f64(),
         gradients,
         answer,
@@ -106,12 +107,12 @@ fn after(campaign: &Campaign, answer: &Answer) -> Result<Option<After>, Failure>
     let Some(file) = file.map(|file| file.display().to_string()) else {
         return Ok(None);
     };
-    let model = catalogue::load(&file)?;
+    let (model, compiled) = catalogue::load_and_compile(&file, Wanted::Jacobian)?;
     let named = answer.discovery.after.named.iter().cloned().collect();
     let vehicle = campaign.vehicle.iter().cloned().collect();
     let values = Values::resolve(model.about(), &named, &vehicle).expect("the search has given every parameter");
     Ok(Some(After {
-        compiled: catalogue::compiled(&file)?,
+        compiled,
         model,
         values,
     }))

@@ -7,14 +7,14 @@ use qcar_runtime::discover::observe::{Evidence, Kind, Stimulus, predict};
 use qcar_runtime::model::{Channel, Model};
 use qcar_runtime::progress::{self, OnProgress};
 use qcar_runtime::response::parameters::Values;
-use qcar_runtime::response::ratio::ratio;
+use qcar_runtime::response::ratio::Ratios;
 
 /// A model with values. A nonlinear model is evaluated at the level of each run, at the lines of its data.
-pub struct LevelResponses<'a> {
-    model: &'a dyn Model,
-    values: &'a Values,
-    /// The responses; `None` for a model that counts as linear.
-    responses: Option<BTreeMap<Key, Response>>,
+pub enum LevelResponses<'a> {
+    /// A model that counts as linear.
+    Linear(Ratios<'a, dyn Model + 'a>),
+    /// Responses of a nonlinear model.
+    Nonlinear(BTreeMap<Key, Response>),
 }
 
 /// A run and a location.
@@ -30,11 +30,7 @@ pub fn swept_by(campaign: &str, model: &dyn Model) -> String {
 impl<'a> LevelResponses<'a> {
     /// A model for small motions about rest, for any run.
     pub fn at_rest(model: &'a dyn Model, values: &'a Values) -> Self {
-        LevelResponses {
-            model,
-            values,
-            responses: None,
-        }
+        LevelResponses::Linear(Ratios::new(model, values))
     }
 
     /// A model in the sweeps of a campaign.
@@ -46,21 +42,26 @@ impl<'a> LevelResponses<'a> {
         let sweeps = (0..evidence.runs.len()).filter(is_sweep);
         let sweeps: Vec<Evidence> = sweeps.map(|run| evidence.only(|own| own == run)).collect();
         let responses = progress::map(&sweeps, on_progress, |sweep| responses(model, values, sweep));
-        LevelResponses {
-            model,
-            values,
-            responses: Some(responses.into_iter().flatten().collect()),
-        }
+        LevelResponses::Nonlinear(responses.into_iter().flatten().collect())
     }
 
     /// A channel in a run with an excitation, at these frequencies (Hz); `None` if the model lacks it.
-    pub fn ratio(&self, run: &str, excitation: usize, of: &Channel, frequency: &[f64]) -> Option<Vec<Complex<f64>>> {
+    pub fn ratio(
+        &mut self,
+        run: &str,
+        excitation: usize,
+        of: &Channel,
+        frequency: &[f64],
+    ) -> Option<Vec<Complex<f64>>> {
         let Channel {
             numerator, denominator, ..
         } = of;
-        let Some(responses) = &self.responses else {
-            let ratio = ratio(self.model, self.values, excitation, numerator, denominator, frequency);
-            return ratio.ok().map(|ratio| ratio.value);
+        let responses = match self {
+            LevelResponses::Linear(ratios) => {
+                let ratio = ratios.ratio(excitation, [numerator, denominator], frequency);
+                return ratio.ok().map(|ratio| ratio.value);
+            }
+            LevelResponses::Nonlinear(responses) => responses,
         };
         let response = |location: &str| responses.get(&(run.to_string(), location.to_string()));
         let (lines, above) = response(&numerator.location)?;

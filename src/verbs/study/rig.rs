@@ -48,7 +48,7 @@ pub struct Polar {
 /// All measured ratios.
 pub fn ratios(of: &Study) -> Vec<Ratio> {
     let after = of.after.as_ref();
-    let after = after.map(|after| {
+    let mut after = after.map(|after| {
         while_counting(swept_by(&of.fitted.campaign.name, &*after.model), |on_progress| {
             LevelResponses::new(&*after.model, &after.values, &of.answer.evidence, on_progress)
         })
@@ -56,11 +56,11 @@ pub fn ratios(of: &Study) -> Vec<Ratio> {
     let compared = compare(&of.fitted);
     compared
         .iter()
-        .map(|compared| together(compared, after.as_ref()))
+        .map(|compared| together(compared, after.as_mut()))
         .collect()
 }
 
-fn together(of: &Compared, after: Option<&LevelResponses>) -> Ratio {
+fn together(of: &Compared, after: Option<&mut LevelResponses>) -> Ratio {
     let Compared { level, observation, .. } = of;
     let measured = unwrapped(&observation.value);
     let after = after.and_then(|after| {

@@ -25,11 +25,14 @@ pub(super) struct Compliance {
     coordinates: usize,
     /// The amplitude of each coordinate for a unit force on each.
     inverse: Option<Vec<Vec<Complex>>>,
+    /// True if there are adjoints of outputs.
+    adjoints: bool,
 }
 
 impl Compliance {
-    /// The compliance of the coordinates that are not prescribed. Adjoints of many outputs are taken from the inverse.
-    pub(super) fn of(model: &Checked, g: &mut Graph, impedance: &Symmetric<Complex>, adjoints: bool) -> Self {
+    /// The compliance of the coordinates that are not prescribed, with `adjoints` of so many outputs. Those of many outputs
+    /// are taken from the inverse: by symmetry, it costs about as much as a solution for half of the unknowns.
+    pub(super) fn of(model: &Checked, g: &mut Graph, impedance: &Symmetric<Complex>, adjoints: usize) -> Self {
         let coordinates = model.coordinates.len();
         let prescribed = |c: usize| {
             let kind = model.coordinates[c].kind;
@@ -39,11 +42,12 @@ impl Compliance {
         let factors = Factors::of(g, impedance.restricted(&unknowns));
         let mut compliance = Compliance {
             factors,
+            adjoints: adjoints > 0 || unknowns.len() <= FEW_UNKNOWNS,
             unknowns,
             coordinates,
             inverse: None,
         };
-        if adjoints || compliance.is_small() {
+        if compliance.is_small() || 2 * adjoints > compliance.unknowns.len() {
             compliance.inverse = Some(compliance.inverse(g));
         }
         compliance
@@ -71,7 +75,7 @@ impl Compliance {
 
     /// True if adjoints are available.
     pub(super) fn has_adjoints(&self) -> bool {
-        self.inverse.is_some()
+        self.adjoints
     }
 
     /// The amplitudes of all coordinates under forces.
@@ -112,7 +116,17 @@ impl Compliance {
 
     /// The response of a combination to a unit force on each coordinate; `None` without adjoints.
     pub(super) fn adjoint(&self, g: &mut Graph, combination: &[(CoordinateId, Expr)]) -> Option<Vec<Complex>> {
-        let rows = self.inverse.as_ref()?;
+        if !self.adjoints {
+            return None;
+        }
+        let Some(rows) = &self.inverse else {
+            let one = Complex::one(g);
+            let forces = combination
+                .iter()
+                .map(|&(c, share)| (c.0 as usize, one.scale(g, share)));
+            let forces: Load = forces.collect();
+            return Some(self.apply(g, &forces));
+        };
         Some(rows.iter().map(|row| along(g, combination, row)).collect())
     }
 }

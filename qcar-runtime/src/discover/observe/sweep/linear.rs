@@ -6,7 +6,7 @@ use super::excitation;
 use crate::discover::observe::{Evidence, Free, Kind, PredictError, Prediction, Stimulus, signal_of};
 use crate::model::Model;
 use crate::response::parameters::Values;
-use crate::response::ratio::ratio;
+use crate::response::ratio::Ratios;
 
 pub fn sweep(
     model: &dyn Model,
@@ -21,6 +21,10 @@ pub fn sweep(
     };
     let excitation = excitation(model, evidence, run, reference)?;
     let below = signal_of(about, reference);
+    let mut ratios = match free {
+        [] => Ratios::new(model, values),
+        _ => Ratios::with_derivatives(model, values),
+    };
     let mut predictions = Vec::new();
     for (place, series) in evidence
         .series
@@ -33,7 +37,7 @@ pub fn sweep(
             continue;
         }
         let above = signal_of(about, &series.sensor);
-        let ratio = ratio(model, values, excitation, &above, &below, &series.at)?;
+        let ratio = ratios.ratio(excitation, [&above, &below], &series.at)?;
         let slope = |free: &Free| {
             let found = ratio.jacobian.iter().find(|(leader, _)| *leader == free.parameter);
             found.map_or_else(|| vec![Complex::ZERO; series.at.len()], |(_, slope)| slope.clone())

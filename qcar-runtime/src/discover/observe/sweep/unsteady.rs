@@ -16,8 +16,9 @@ use super::{excitation, linear, nonlinear};
 use crate::campaign::Role;
 use crate::discover::observe::{Evidence, Kind, PredictError, Series, Stimulus, TestConditions, order_of, signal_of};
 use crate::model::{Model, Signal};
+use crate::response::Response;
 use crate::response::parameters::Values;
-use crate::response::ratio::ratio;
+use crate::response::ratio::between;
 use crate::response::signal::SignalError;
 use crate::simulate::replay::reading;
 use crate::simulate::{Between, Reading, Recorded, Replay};
@@ -209,8 +210,10 @@ impl<'a> Driven<'a> {
         let inside = first..((self.band.1 / spacing) as usize).clamp(first, lines.len());
         let at: Vec<f64> = inside.clone().map(|line| line as f64 * spacing).collect();
         let below = signal_of(model.about(), self.reference);
+        let mut response = Response::new(model, self.excitation, &at);
+        response.evaluate_values(values.as_slice());
         let answer = |sensor: &Signal| {
-            let response = ratio(model, values, self.excitation, sensor, &below, &at)?;
+            let response = between(&response, values, sensor, &below)?;
             let mut answer = vec![Complex::ZERO; lines.len()];
             for ((answer, line), response) in answer[inside.clone()]
                 .iter_mut()
