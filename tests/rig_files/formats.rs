@@ -182,25 +182,36 @@ fn rpc_gives_the_same_fit_within_its_rounding() {
     }
 }
 
-/// The samples as RPC III rounds them, which MAT holds in full.
-fn rounded(group: &Group) -> Group {
-    let channel = |own: &Channel| {
-        let step = rpc::step(own);
-        let samples = own.samples.iter().map(|value| (value / step).round() * step);
-        Channel::new(&own.name, &own.unit, samples.collect())
-    };
+/// A group with other samples in each channel.
+fn with_samples(group: &Group, samples: impl Fn(&Channel) -> Vec<f64>) -> Group {
+    let channel = |own: &Channel| Channel::new(&own.name, &own.unit, samples(own));
     Group {
         rate: group.rate,
         channels: group.channels.iter().map(channel).collect(),
     }
 }
 
-#[test]
-fn rpc_gives_the_same_fit_as_its_samples_in_another_file() {
-    let (own, _) = both("rsp", rpc::file);
+/// Checks that RPC III gives the same fit as MAT, which holds the samples in full as RPC III rounds them.
+fn same_as_rounded(rpc: impl Fn(&Group) -> Vec<u8>, rounded: impl Fn(&Group) -> Group) {
+    let (own, _) = both("rsp", rpc);
     let (other, _) = both("mat", |group| mat5::file(&rounded(group)));
     assert!(own.len() >= 8 && own.len() == other.len(), "{own:?} {other:?}");
     for ((name, value, _), (_, same, _)) in own.into_iter().zip(other) {
         assert!((value / same - 1.0).abs() < SAME, "{name} is {value}, not {same}");
     }
+}
+
+#[test]
+fn rpc_of_short_integers_gives_the_same_fit_as_its_samples_in_another_file() {
+    let rounded = |own: &Channel| {
+        let step = rpc::step(own);
+        own.samples.iter().map(|value| (value / step).round() * step).collect()
+    };
+    same_as_rounded(rpc::file, |group| with_samples(group, rounded));
+}
+
+#[test]
+fn rpc_of_floats_gives_the_same_fit_as_its_samples_in_another_file() {
+    let rounded = |own: &Channel| own.samples.iter().map(|value| f64::from(*value as f32)).collect();
+    same_as_rounded(rpc::floats, |group| with_samples(group, rounded));
 }
