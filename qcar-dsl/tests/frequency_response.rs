@@ -143,10 +143,11 @@ fn a_whole_axle_responds_as_its_matrices_say() {
 proptest! {
     #![proptest_config(common::cases(48))]
 
+    /// The excitation has the size 1, and so have rounding errors, however small the outputs.
     #[test]
     fn random_models_respond_as_their_matrices_say(plan in plan(), omega in 0.1..3.0f64) {
         let (model, p) = plan.build_with_groups();
-        judge(model, &p, &[omega], 1e-4);
+        judge_some(model, &p, &[omega], 1e-4, 1.0);
     }
 
     /// A road that rises slowly lifts everything that hangs on it by as much, whatever the levers: a lever's stretch is

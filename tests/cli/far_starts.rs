@@ -155,7 +155,7 @@ fn the_law_of_a_spring_that_gives_way_is_learned_from_far_away() {
     assert!(learned["explained"].as_f64().unwrap() > 0.98, "{learned}");
 }
 
-/// A quarter car on a road whose recorded height has white noise of 6 µm, as of a displacement sensor. Above the band of the road this is
+/// A quarter car on a road whose recorded height has white noise of 3 µm, as of a displacement sensor. Above the band of the road this is
 /// an acceleration that never was; a light part at 120 Hz would filter it out of the prediction.
 #[test]
 fn noise_in_a_recorded_input_is_no_effect() {
@@ -203,7 +203,7 @@ fn noise_in_a_recorded_input_is_no_effect() {
             if step % FINER == 0 {
                 let [_, body, _, wheel] = rates(x, ground[0]);
                 let mut read = |value: f64, sigma: f64| value + sigma * random.normal();
-                let (pad, body, wheel) = (read(ground[0][0], 6e-6), read(body, 0.006), read(wheel, 0.03));
+                let (pad, body, wheel) = (read(ground[0][0], 3e-6), read(body, 0.002), read(wheel, 0.012));
                 table += &format!("{},{pad},{body},{wheel}\n", step as f64 * h);
             }
             x = stepped(&rates, x, ground, h);

@@ -10,12 +10,12 @@ pub mod assembly;
 mod screen;
 // Successive halving of the candidates.
 mod race;
-// Sets with one more effect.
-mod extend;
 // Multi-start fit of a model without effects.
 mod multi_start;
 // A set of effects with its fit.
 mod set;
+// Sets with one more effect.
+mod extend;
 // Posterior probabilities of the sets.
 mod probability;
 // Checks on held-out runs.

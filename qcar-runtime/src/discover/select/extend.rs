@@ -24,10 +24,17 @@ pub fn extensions(set: &Set, lead: f64, evidence: &Evidence, progress: Progress<
     )));
     // One more effect hardly changes the non-steady part of a sweep response, so it is subtracted once.
     let steady = evidence.minus(&set.explanation.refit.unsteady).with_step_limit();
-    let mut sets = extended(set, &candidates, &Start::of(set, &steady), lead, evidence, progress);
+    let mut sets = extended(
+        set,
+        &candidates,
+        &SearchStart::of(set, &steady),
+        lead,
+        evidence,
+        progress,
+    );
     if is_missing(set, evidence)
         && sets.iter().all(|own| !explains_fitted(set, own, evidence))
-        && let Some(start) = Start::in_windows(set, &steady)
+        && let Some(start) = SearchStart::in_windows(set, &steady)
     {
         progress(Update::Step("screening in short windows of the records"));
         sets.extend(extended(set, &candidates, &start, lead, evidence, progress));
@@ -42,12 +49,12 @@ pub fn explains_fitted(before: &Set, after: &Set, evidence: &Evidence) -> bool {
 }
 
 /// Data of a search that starts from a set, and the fit of the set to the coarse part.
-pub struct Start {
+pub struct SearchStart {
     pub fidelity: Fidelity,
     pub refit: Refit,
 }
 
-impl Start {
+impl SearchStart {
     /// For a set that is nearly right.
     pub fn of(set: &Set, steady: &Evidence) -> Self {
         Self {
@@ -70,12 +77,12 @@ impl Start {
 fn extended(
     set: &Set,
     candidates: &[Candidate],
-    start: &Start,
+    start: &SearchStart,
     lead: f64,
     evidence: &Evidence,
     progress: Progress<'_>,
 ) -> Vec<Set> {
-    let Start { fidelity, refit } = start;
+    let SearchStart { fidelity, refit } = start;
     let mut screened = screen(&set.assembly, candidates, refit, &fidelity.coarse);
     // A model with a large residual has poor parameters, which makes a first-order gain unreliable. So every candidate
     // also starts from the given values, whatever its gain. Sets with effects have already been fitted from there.

@@ -4,7 +4,7 @@
 use rayon::prelude::*;
 
 use super::assembly::Placed;
-use super::extend::{Start, explains_fitted};
+use super::extend::{SearchStart, explains_fitted};
 use super::held_out::predicts_better;
 use super::race::{Finalist, race};
 use super::screen::Screened;
@@ -54,12 +54,12 @@ pub fn with_law(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Optio
     let laws = set.assembly.laws();
     progress(Update::Step(&format!("learning a law at {} places", laws.len())));
     let steady = evidence.minus(&set.explanation.refit.unsteady).with_step_limit();
-    let law = most_probable_law(set, &laws, &Start::of(set, &steady), evidence, progress);
+    let law = most_probable_law(set, &laws, &SearchStart::of(set, &steady), evidence, progress);
     if !is_missing(set, evidence) || law.as_ref().is_some_and(|law| explains_fitted(set, law, evidence)) {
         return law;
     }
-    let in_windows =
-        Start::in_windows(set, &steady).and_then(|start| most_probable_law(set, &laws, &start, evidence, progress));
+    let in_windows = SearchStart::in_windows(set, &steady)
+        .and_then(|start| most_probable_law(set, &laws, &start, evidence, progress));
     let both = law.into_iter().chain(in_windows);
     both.max_by(|a, b| a.log_posterior().total_cmp(&b.log_posterior()))
 }
@@ -67,7 +67,7 @@ pub fn with_law(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Optio
 fn most_probable_law(
     set: &Set,
     laws: &[Candidate],
-    start: &Start,
+    start: &SearchStart,
     evidence: &Evidence,
     progress: Progress<'_>,
 ) -> Option<Set> {
