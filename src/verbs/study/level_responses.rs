@@ -12,7 +12,7 @@ use qcar_runtime::response::ratio::Ratios;
 /// A model with values. A nonlinear model is evaluated at the level of each run, at the lines of its data.
 pub enum LevelResponses<'a> {
     /// A model that counts as linear.
-    Linear(Ratios<'a, dyn Model + 'a>),
+    Linear(Box<Ratios<'a, dyn Model + 'a>>),
     /// Responses of a nonlinear model.
     Nonlinear(BTreeMap<Key, Response>),
 }
@@ -30,7 +30,7 @@ pub fn swept_by(campaign: &str, model: &dyn Model) -> String {
 impl<'a> LevelResponses<'a> {
     /// A model for small motions about rest, for any run.
     pub fn at_rest(model: &'a dyn Model, values: &'a Values) -> Self {
-        LevelResponses::Linear(Ratios::new(model, values))
+        LevelResponses::Linear(Box::new(Ratios::new(model, values)))
     }
 
     /// A model in the sweeps of a campaign.
