@@ -4,6 +4,7 @@ pub mod programs;
 pub mod random;
 pub mod reference;
 
+use proptest::test_runner::RngSeed;
 use qcar_dsl::check::Checked;
 use qcar_dsl::expr::{CoordinateId, Expr, Graph, LinkId, Symbol};
 use qcar_dsl::model::{
@@ -15,11 +16,15 @@ use qcar_dsl::units::Unit;
 
 const UNIT: Unit = Unit { sixths: [0; 3] };
 
-/// So many random cases, without a file of those that failed before.
+/// So many random cases, the same in each run, so that a failure can be repeated. `PROPTEST_RNG_SEED` draws others.
 pub fn cases(cases: u32) -> proptest::test_runner::Config {
     proptest::test_runner::Config {
         cases,
         failure_persistence: None,
+        rng_seed: match std::env::var("PROPTEST_RNG_SEED").map(|seed| seed.parse()) {
+            Ok(Ok(seed)) => RngSeed::Fixed(seed),
+            _ => RngSeed::Fixed(1),
+        },
         ..std::default::Default::default()
     }
 }
