@@ -82,6 +82,11 @@ fn pushed() -> Vec<(&'static str, Vec<f64>)> {
     vec![("push", force), ("z", mass([0.0, 0.0], push))]
 }
 
+/// A campaign of one record of the shipped model of one mass, with inputs that are held between samples.
+fn recorded_campaign(folder: &Path, parameters: &str, columns: Columns) {
+    campaign(folder, "one_mass", parameters, "band_limited = false", &[columns]);
+}
+
 /// A campaign of one record of the pushed mass.
 fn pushed_campaign(folder: &Path, model: &str, parameters: &str) {
     campaign(folder, model, parameters, "band_limited = false", &[&pushed()]);
@@ -168,13 +173,7 @@ fn a_linear_model_is_fitted_to_the_samples_of_time_histories_alone() {
         .collect();
     let force = (0..SAMPLES).map(|k| push((k as f64 + 0.5) / RATE)).collect();
     let columns = [("push", force), ("z", mass([0.02, -0.4], push))];
-    campaign(
-        folder.path(),
-        "one_mass",
-        &parameters,
-        "band_limited = false",
-        &[&columns],
-    );
+    recorded_campaign(folder.path(), &parameters, &columns);
     let path = folder.path().to_str().unwrap();
     let fit = |more: &[&str]| -> Value {
         let words = [&["fit", path, "--starts", "1", "--format", "json"], more].concat();
@@ -227,13 +226,7 @@ fn an_offset_is_told_and_counted_once() {
         + &parameter("k_body", 700.0, "N/m", "range = [100.0, 2000.0]\n");
     let mut columns = pushed();
     columns[1].1.iter_mut().for_each(|z| *z += 2e-4);
-    campaign(
-        folder.path(),
-        "one_mass",
-        &parameters,
-        "band_limited = false",
-        &[&columns],
-    );
+    recorded_campaign(folder.path(), &parameters, &columns);
     let answer = discovered(path);
     let own = &answer["offsets"][0];
     assert_eq!((&own["channel"], &own["unit"]), (&"body_z".into(), &"m".into()));
@@ -244,13 +237,7 @@ fn an_offset_is_told_and_counted_once() {
     let file = fs::read_to_string(out.join("parameters.toml")).unwrap();
     assert!(file.contains("# offset of body_z displacement: "), "{file}");
     let parameters = parameters + &parameter("f_offset", 0.0, "N", "range = [-10.0, 10.0]\n");
-    campaign(
-        folder.path(),
-        "one_mass",
-        &parameters,
-        "band_limited = false",
-        &[&columns],
-    );
+    recorded_campaign(folder.path(), &parameters, &columns);
     let answer = discovered(path);
     assert_eq!(answer["offsets"], serde_json::json!([]), "{answer}");
     assert!(

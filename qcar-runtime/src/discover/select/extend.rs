@@ -37,7 +37,14 @@ pub fn extensions(set: &Set, lead: f64, evidence: &Evidence, progress: Progress<
         && let Some(start) = SearchStart::in_windows(set, &steady)
     {
         progress(Update::Step("screening in short windows of the records"));
-        sets.extend(extended(set, &candidates, &start, lead, evidence, progress));
+        for own in extended(set, &candidates, &start, lead, evidence, progress) {
+            // Both searches may find the same model, whose probability counts once.
+            match sets.iter_mut().find(|known| known.has_same_effects(&own)) {
+                Some(known) if known.log_posterior() >= own.log_posterior() => (),
+                Some(known) => *known = own,
+                None => sets.push(own),
+            }
+        }
     }
     sets
 }

@@ -115,6 +115,16 @@ impl Set {
                 .any(|own| own.unknowns.has_parameter_at_bound(&self.explanation))
     }
 
+    /// True if another set has the same effects in the same forms, added in the same order.
+    pub fn has_same_effects(&self, other: &Set) -> bool {
+        let effects = |set: &'_ Set| -> Vec<_> {
+            let all = set.assembly.effects().iter();
+            all.map(|own| (own.effect.clone(), own.at.clone(), own.form.clone()))
+                .collect()
+        };
+        effects(self) == effects(other)
+    }
+
     /// The named effects: those that are not nuisance effects.
     pub fn named(&self) -> impl Iterator<Item = &Placed> + Clone {
         self.assembly.effects().iter().filter(|own| !own.nuisance)
