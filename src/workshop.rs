@@ -167,7 +167,7 @@ impl Bench {
                     axis,
                     form: match signal.kind {
                         Signal::Delay => Form::Delay,
-                        Signal::Gain => Form::Gain(0),
+                        Signal::Gain => Form::Gain,
                     },
                     parameter: added(patched.parameters.first()?),
                 },

@@ -211,7 +211,7 @@ pub(crate) fn answer(
             }
         }
     };
-    let discovery = select::discover(Box::new(bench.clone()), &setting, &evidence, &on_update);
+    let discovery = select::discover(Box::new(bench.clone()), &setting, &mut evidence, &on_update);
     drop(showing);
     out.inspect(|folder| leave(folder, Vec::new()));
     let discovery =

@@ -19,6 +19,7 @@ mod interruption;
 mod json_reference;
 mod laws;
 mod newcomer;
+mod noisy_inputs;
 mod plans;
 mod published;
 mod readme;

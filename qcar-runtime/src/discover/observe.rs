@@ -43,3 +43,4 @@ pub use run::{Band, Means, Passage, Recordings, Restart, Run, Spread, Stimulus, 
 pub use sensor::{excitation_of, order_of, signal_of};
 pub use series::{Kind, Series};
 pub use sweep::unsteady;
+pub use time_history::Quieter;

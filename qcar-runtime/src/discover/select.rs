@@ -54,11 +54,12 @@ pub use multi_start::{Minimum, MultiStart, fit_from_starts};
 use super::answer::{Discovery, Learned, Progress, Update, Verdict, rms_text};
 use super::candidate::Workshop;
 use super::numbers::{EVEN, GREATER_PART, MOST_EFFECTS, Numbers};
-use super::observe::{Evidence, PredictError, Run, Stimulus};
+use super::observe::{Evidence, PredictError, Quieter, Run, Stimulus};
 use super::posterior::{Explanation, Refit, Setting};
 use crate::campaign::Role;
 
-/// Searches for the effects that the model lacks. Calls `progress` with each step and each intermediate result.
+/// Searches for the effects that the model lacks. Calls `progress` with each step and each intermediate result. Removes the
+/// noise of recorded inputs from `evidence`, with a notice, if that makes the measured responses more probable.
 ///
 /// # Errors
 /// Fails if no run may be fitted, if the model lacks a measured quantity, if a parameter has no value, or if the base
@@ -66,15 +67,47 @@ use crate::campaign::Role;
 pub fn discover(
     workshop: Box<dyn Workshop>,
     setting: &Setting,
-    evidence: &Evidence,
+    evidence: &mut Evidence,
     progress: Progress<'_>,
 ) -> Result<Discovery, PredictError> {
     if evidence.of_role(Role::Fit).next().is_none() {
         return Err(PredictError::NothingToFit);
     }
     progress(Update::Step("fitting the base model"));
-    let assembly = Assembly::base(Arc::from(workshop), setting, evidence)?;
-    let base = fit_base(assembly, evidence)?;
+    let workshop: Arc<dyn Workshop> = Arc::from(workshop);
+    let fitted = |evidence: &Evidence| fit_base(Assembly::base(workshop.clone(), setting, evidence)?, evidence);
+    let mut base = fitted(evidence)?;
+    let mut quieter = Quieter::of(evidence);
+    if let Some(own) = quieter.take() {
+        let other = fitted(&own.evidence)?;
+        if is_more_probable(other.explanation.refit.log_evidence, &base, evidence) {
+            *evidence = own.seen_by(other.assembly.model(), &other.explanation.refit.values)?;
+            base = fitted(evidence)?;
+        } else {
+            quieter = Some(own);
+        }
+    }
+    let (discovery, found) = search(base, evidence, progress);
+    // Beside a large missing effect the noise is not seen, so the answer is asked again.
+    let quieter = quieter.filter(|quieter| {
+        let again = found.again(&quieter.evidence);
+        again.is_some_and(|log_evidence| is_more_probable(log_evidence, &found, evidence))
+    });
+    let Some(quieter) = quieter else {
+        return Ok(discovery);
+    };
+    *evidence = quieter.seen_by(found.assembly.model(), &found.explanation.refit.values)?;
+    progress(Update::Step("repeating the search without the noise of the recorded inputs"));
+    Ok(search(fitted(evidence)?, evidence, progress).0)
+}
+
+/// True if other data of the same responses make them more probable by the odds of a certain answer.
+fn is_more_probable(log_evidence: f64, than: &Set, evidence: &Evidence) -> bool {
+    log_evidence - than.explanation.refit.log_evidence > evidence.numbers.odds_of_certain().ln()
+}
+
+/// The search from a fitted base model. Also returns the set of the answer.
+fn search(base: Set, evidence: &Evidence, progress: Progress<'_>) -> (Discovery, Set) {
     let text = format!("the base model alone leaves {}", rms_text(&base.explanation));
     progress(Update::Interim(&text, &[], &base.explanation));
     let mut sets = vec![base];
@@ -123,7 +156,7 @@ pub fn discover(
         let steady = evidence.minus(&refit.unsteady).with_step_limit();
         discovery.detection_limits = detection_limits(&base.assembly, refit, &Fidelity::of(&steady).fine);
     }
-    Ok(discovery)
+    (discovery, sets.swap_remove(found))
 }
 
 /// True if a model of records alone leaves no more than noise in any run. The uncertainty of a record includes half a percent of the

@@ -12,40 +12,51 @@ pub struct Shape {
 /// Form of a sensor error over frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Form {
-    /// Log gain: the Chebyshev polynomial of this degree in log frequency, with amplitude 1.
-    Gain(usize),
-    /// Phase, rad, in the same polynomials.
-    Phase(usize),
+    /// Log gain, the same at all frequencies.
+    Gain,
+    /// Log gain that rises by 1 about a corner frequency, with the phase that belongs to it. [`CORNERS`] of them are
+    /// spread evenly over the band in log frequency, counted from 0.
+    Shelf(usize),
+    /// Phase, rad, the same at all frequencies.
+    Phase,
     /// Delay, s.
     Delay,
     /// Zero offset of a sensor in a time history, relative to the RMS of its readings.
     Offset,
 }
 
-/// Priors of a sensor: about 0.7 % of gain, half of it varying with frequency; 0.2° of phase; 50 µs of delay; an offset
-/// in time histories of a tenth of the reading.
+/// Number of shelves of a calibration curve. Each extends over a decade, a band over one to two.
+pub const CORNERS: usize = 3;
+
+/// Prior standard deviation of the height of a shelf. The sensitivity of piezoelectric accelerometers changes by about
+/// 2 % in a decade (data sheets of Metra, and others). This is taken as two standard deviations: three shelves in 1.75
+/// decades.
+const SHELF: f64 = 0.01;
+
+/// Priors of a sensor: 0.7 % of gain; a smooth calibration curve; 0.2° of phase; 50 µs of delay; an offset in time
+/// histories of a tenth of the reading.
 ///
 /// Thesis section 3.4 uses capacitive accelerometers. Their data sheets give 0.5 to 1 % of gain and the phase of a
 /// first-order filter at several hundred hertz.
 pub const SENSOR: [Shape; 7] = [
     Shape {
-        form: Form::Gain(0),
+        form: Form::Gain,
         sigma: 0.007,
     },
     Shape {
-        form: Form::Gain(1),
-        sigma: 0.0035,
+        form: Form::Shelf(0),
+        sigma: SHELF,
     },
     Shape {
-        form: Form::Gain(2),
-        sigma: 0.0025,
+        form: Form::Shelf(1),
+        sigma: SHELF,
     },
     Shape {
-        form: Form::Gain(3),
-        sigma: 0.0015,
+        form: Form::Shelf(2),
+        sigma: SHELF,
     },
     Shape {
-        form: Form::Phase(0),
+        form: Form::Phase,
         sigma: 0.003,
     },
     Shape {

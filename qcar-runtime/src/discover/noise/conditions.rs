@@ -70,8 +70,8 @@ impl Nuisance {
     /// left out: beyond its calibration, the gain of an input is an effect of the model.
     fn drive_gains(&self, run: &Run, reference: &Point) -> impl Iterator<Item = usize> {
         let is_record = matches!(run.stimulus, Stimulus::History { .. });
-        let suspects = self.suspected(reference, Form::Gain(0)).filter(move |_| !is_record);
-        self.coefficient(reference, Form::Gain(0)).into_iter().chain(suspects)
+        let suspects = self.suspected(reference, Form::Gain).filter(move |_| !is_record);
+        self.coefficient(reference, Form::Gain).into_iter().chain(suspects)
     }
 
     /// Derivatives of a prediction by the delay coefficients, each with the position of its coefficient.

@@ -20,7 +20,7 @@ use crate::transmissibility::Point;
 pub struct Nuisance {
     /// The sensors, including references.
     pub sensors: Vec<Point>,
-    /// Lowest and highest frequency of the polynomials, Hz.
+    /// Lowest and highest frequency of the calibration curves, Hz.
     pub band: (f64, f64),
     /// Suspected errors beyond the calibration.
     pub suspects: Vec<Suspect>,
@@ -157,8 +157,8 @@ impl Nuisance {
 
     /// Positions of the coefficients of a sensor's mean gain: that of its calibration and those of suspects.
     pub(super) fn mean_gains(&self, sensor: &Point) -> impl Iterator<Item = usize> {
-        let own = self.coefficient(sensor, Form::Gain(0)).into_iter();
-        own.chain(self.suspected(sensor, Form::Gain(0)))
+        let own = self.coefficient(sensor, Form::Gain).into_iter();
+        own.chain(self.suspected(sensor, Form::Gain))
     }
 
     /// Positions of the coefficients of suspects of this form that contain the sensor.

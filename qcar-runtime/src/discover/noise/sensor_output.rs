@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Complex;
 
-use super::calibration::{Form, SENSOR};
+use super::calibration::{CORNERS, Form, SENSOR};
 use super::nuisance::{Nuisance, rms};
 use crate::discover::observe::{Evidence, Kind, Series};
 use crate::transmissibility::Point;
@@ -117,7 +117,7 @@ impl Nuisance {
             .map(|shape| shape.form)
             .filter(|&form| form != Form::Offset);
         let own = factors.filter_map(|form| Some((self.coefficient(sensor, form)?, form)));
-        let suspects = [Form::Gain(0), Form::Delay]
+        let suspects = [Form::Gain, Form::Delay]
             .into_iter()
             .flat_map(|form| self.suspected(sensor, form).map(move |k| (k, form)));
         let column = |(k, form): (usize, Form)| {
@@ -127,18 +127,27 @@ impl Nuisance {
         own.chain(suspects).map(column).collect()
     }
 
+    /// Derivative of the logarithm of a reading at a frequency (Hz) by the coefficient of a form.
     fn shape(&self, form: Form, f: f64) -> Complex<f64> {
         match form {
-            Form::Gain(degree) => Complex::from(self.chebyshev(degree, f)),
-            Form::Phase(degree) => Complex::I * self.chebyshev(degree, f),
+            Form::Gain => Complex::ONE,
+            Form::Shelf(place) => shelf(f / self.corner(place)),
+            Form::Phase => Complex::I,
             Form::Delay => -Complex::I * TAU * f,
             Form::Offset => unreachable!("an offset is no factor"),
         }
     }
 
-    fn chebyshev(&self, degree: usize, f: f64) -> f64 {
+    /// Corner frequency of a shelf, Hz: in the middle of its share of the band.
+    fn corner(&self, place: usize) -> f64 {
         let (first, last) = self.band;
-        let u = (2.0 * (f / first).ln() / (last / first).ln().max(f64::MIN_POSITIVE) - 1.0).clamp(-1.0, 1.0);
-        (degree as f64 * u.acos()).cos()
+        first * (last / first).powf((place as f64 + 0.5) / CORNERS as f64)
     }
+}
+
+/// Logarithm of the response of a first-order shelf of small height over that height, at a frequency relative to its
+/// corner: of `(1 + ix e^(h/2)) / (1 + ix e^(-h/2)) · e^(-h/2)`. It has minimum phase.
+fn shelf(x: f64) -> Complex<f64> {
+    let ix = Complex::new(0.0, x);
+    (ix - 1.0) / (ix + 1.0) / 2.0
 }

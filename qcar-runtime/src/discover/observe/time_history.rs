@@ -2,6 +2,8 @@
 
 // Sensor noise of a record.
 mod noise;
+// Recorded inputs without their noise.
+mod input_noise;
 // Initial states and restarts of a record.
 mod restarts;
 // Measured records.
@@ -9,4 +11,5 @@ mod measured;
 // Predicted records.
 mod predicted;
 
+pub use input_noise::Quieter;
 pub use predicted::{history, replayed};

@@ -152,16 +152,23 @@ pub fn race(
     (finalists.collect(), dropped)
 }
 
-/// Candidates for the first round, among those with a positive gain: the ones with the largest gain, the best of each
-/// place, and the best of each form of each effect. The screening shows that something is missing, the fits show
-/// what: the parameters of a model without an effect may have to change much before the effect gains much.
+/// Candidates for the first round, among the effects that gain at a place in some form: the ones with the largest gain,
+/// the best of each place, and the best of each form of each effect. The screening shows that something is missing, the
+/// fits show what: the parameters of a model without an effect may have to change much before the effect gains much.
 pub fn entrants<'p>(candidates: &[Candidate], screened: &'p [Screened]) -> Vec<&'p Screened> {
+    let effect = |entry: &Screened| {
+        let own = &candidates[entry.candidate];
+        (own.effect.as_str(), own.at.as_str())
+    };
+    let gaining = screened.iter().filter(|entry| entry.gain() > 0.0);
+    let gaining: HashSet<_> = gaining.map(effect).collect();
     let (mut places, mut forms) = (HashSet::new(), HashSet::new());
     let enters = |(rank, entry): &(usize, &Screened)| {
         let own = &candidates[entry.candidate];
         let is_first_there = places.insert(own.at.as_str());
         let is_first_of_its_form = forms.insert((own.effect.as_str(), own.form.as_deref()));
-        entry.gain() > 0.0 && (*rank < ENTRANTS || is_first_there || is_first_of_its_form)
+        let is_chosen = *rank < ENTRANTS || is_first_there || is_first_of_its_form;
+        is_chosen && gaining.contains(&effect(entry))
     };
     let entering = screened.iter().enumerate().filter(enters);
     entering.map(|(_, entry)| entry).collect()
@@ -261,19 +268,21 @@ mod tests {
         }
     }
 
-    /// Friction has a small gain and ranks behind all direct entrants; the stop has no gain.
+    /// Friction has a small gain and ranks behind all direct entrants; one of its forms has none, and neither has the
+    /// stop.
     #[test]
     fn every_form_of_an_effect_is_fitted_at_its_best_place_and_every_place_has_one() {
         let law = |k: usize| (candidate(&format!("law {k}"), "damper"), 100.0 - k as f64);
-        let in_damper = Candidate {
-            form: Some("in_damper".into()),
+        let [in_damper, with_memory] = ["in_damper", "with_memory"].map(|form| Candidate {
+            form: Some(form.into()),
             ..candidate("friction", "damper")
-        };
+        });
         let later = [
             (candidate("friction", "damper"), 5.0),
             (candidate("law 0", "spring"), 4.0),
             (candidate("friction", "spring"), 3.0),
             (in_damper, 2.0),
+            (with_memory, -1.0),
             (candidate("stop", "top_mount"), 0.0),
         ];
         let all = (0..ENTRANTS).map(law).chain(later);
@@ -286,6 +295,6 @@ mod tests {
         let screened: Vec<Screened> = gains.into_iter().enumerate().map(entry).collect();
         let later = entrants(&candidates, &screened).into_iter().skip(ENTRANTS);
         let later: Vec<usize> = later.map(|own| own.candidate - ENTRANTS).collect();
-        assert_eq!(later, [0, 1, 3]);
+        assert_eq!(later, [0, 1, 3, 4]);
     }
 }

@@ -3,11 +3,15 @@
 use std::sync::OnceLock;
 
 use super::assembly::{Assembly, Placed};
+use super::fidelity::Fidelity;
 use crate::campaign::Role;
 use crate::discover::answer::{Finding, Rival};
 use crate::discover::numbers::{Numbers, ONE_SIDED};
 use crate::discover::observe::{Evidence, Series};
 use crate::discover::posterior::Explanation;
+
+/// Rounds and evaluations of a fit to other evidence from a known optimum.
+const AGAIN: (usize, usize) = (2, 20);
 
 #[derive(Clone)]
 pub struct Set {
@@ -41,6 +45,15 @@ impl Set {
             rivals: Vec::new(),
             score: OnceLock::new(),
         }
+    }
+
+    /// Log evidence of the set for other evidence of the same runs, fitted from the present optimum; `None` if the fit
+    /// fails.
+    pub fn again(&self, evidence: &Evidence) -> Option<f64> {
+        let hypothesis = self.assembly.hypothesis();
+        let from = hypothesis.place(&self.explanation.refit);
+        let refit = hypothesis.fit(&from, &Fidelity::of(evidence).fine, AGAIN).ok()?;
+        Some(refit.log_evidence).filter(|own| own.is_finite())
     }
 
     /// Log posterior probability, up to a constant of the data.

@@ -1,0 +1,180 @@
+//! Removes the noise of recorded inputs where it hides the excitation.
+//!
+//! A model responds to the noise of a recorded input as to an excitation, while the machine did not. At frequencies at
+//! which the input is hardly more than noise, the model then predicts a response that was not measured, and anything
+//! that filters the input looks like a missing effect. The Wiener filter weights each frequency by the share of its
+//! power that is not noise (Wiener, N.: Extrapolation, interpolation, and smoothing of stationary time series, 1949).
+//! It is the best estimate of the true input.
+
+use std::f64::consts::TAU;
+
+use nalgebra::Complex;
+
+use super::noise::noise;
+use crate::campaign::Role;
+use crate::discover::numbers::ONE_SIDED;
+use crate::discover::observe::predict::predict;
+use crate::discover::observe::series::LEAST_NOISE;
+use crate::discover::observe::{Evidence, PredictError, Stimulus};
+use crate::mean::{deviation, rms};
+use crate::model::Model;
+use crate::random::SplitMix;
+use crate::response::parameters::Values;
+use crate::spectrum::{synthesize, transform};
+use crate::transmissibility::Point;
+
+/// Spectral lines to each side over which the power is averaged.
+const AROUND: usize = 16;
+/// Seed of the draw, so that each search gives the same answer.
+const SEED: u64 = 1;
+
+/// A data set whose recorded inputs are filtered.
+pub struct Quieter {
+    /// The data set.
+    pub evidence: Evidence,
+    /// The same with a random draw of the noise that the filter leaves, added to the inputs.
+    drawn: Evidence,
+}
+
+impl Quieter {
+    /// The data with the noise of all recorded inputs removed; `None` if it is below that of a 12-bit converter
+    /// everywhere. Whether it is noise, only the responses tell: an input may also be as wide as white noise.
+    pub fn of(evidence: &Evidence) -> Option<Self> {
+        let (mut quieter, mut drawn) = (evidence.clone(), evidence.clone());
+        let mut random = SplitMix::new(SEED);
+        let mut notices = Vec::new();
+        for (run, drawn) in quieter.runs.iter_mut().zip(&mut drawn.runs) {
+            let (Stimulus::History { inputs, periodic, .. }, Stimulus::History { inputs: noisy, .. }) =
+                (&mut run.stimulus, &mut drawn.stimulus)
+            else {
+                continue;
+            };
+            for ((sensor, samples), (_, noisy)) in inputs.signals.iter_mut().zip(&mut noisy.signals) {
+                let [filtered, noise] = without_noise(samples, *periodic, &mut random);
+                let removed = rms(samples.iter().zip(&filtered).map(|(a, b)| a - b)) / deviation(samples);
+                if removed > LEAST_NOISE {
+                    notices.push(notice(&run.name, sensor, removed));
+                    *noisy = filtered.iter().zip(&noise).map(|(signal, noise)| signal + noise).collect();
+                    *samples = filtered;
+                }
+            }
+        }
+        if notices.is_empty() {
+            return None;
+        }
+        quieter.notices.extend(notices);
+        Some(Self {
+            evidence: quieter,
+            drawn,
+        })
+    }
+
+    /// The filtered data. The uncertainty of each response includes that of its input: the RMS of what the model makes of
+    /// the noise that the filter leaves.
+    ///
+    /// # Errors
+    /// Fails if the model lacks a measured quantity.
+    pub fn seen_by(self, model: &dyn Model, values: &Values) -> Result<Evidence, PredictError> {
+        let mut evidence = self.evidence;
+        for role in [Role::Fit, Role::HeldOut] {
+            let without = predict(model, values, &[], &evidence, role)?;
+            let with = predict(model, values, &[], &self.drawn, role)?;
+            for (without, with) in without.iter().zip(&with) {
+                let differences = without.value.iter().zip(&with.value).map(|(a, b)| (a - b).norm());
+                let added = rms(differences);
+                let series = &mut evidence.series[without.series];
+                let uncertain = series.sigma.iter_mut().chain(&mut series.noise);
+                uncertain.for_each(|own| *own = own.hypot(added));
+            }
+        }
+        Ok(evidence)
+    }
+}
+
+fn notice(run: &str, sensor: &Point, removed: f64) -> String {
+    let percent = 100.0 * removed;
+    format!(
+        "{run}: the responses show that {percent:.2} % of the recorded input {sensor} is noise; it is removed where it hides the excitation"
+    )
+}
+
+/// A signal through the Wiener filter for its noise, which is taken as white, and a draw of the noise that is left.
+fn without_noise(samples: &[f64], periodic: bool, random: &mut SplitMix) -> [Vec<f64>; 2] {
+    let noise = noise(samples, &[samples], periodic);
+    if periodic {
+        return filtered(samples, noise, random);
+    }
+    // The filter takes its input for one period. Without the line through its ends, and continued by its mirror image with
+    // the opposite sign, the signal has no jump and no kink there.
+    let last = samples.len() - 1;
+    let line = |k: usize| samples[0] + (samples[last] - samples[0]) * k as f64 / last as f64;
+    let moving: Vec<f64> = (0..=last).map(|k| samples[k] - line(k)).collect();
+    let mirrored = moving[1..last].iter().rev().map(|own| -own);
+    let both: Vec<f64> = moving.iter().copied().chain(mirrored).collect();
+    let [signal, mut left] = filtered(&both, noise, random);
+    left.truncate(samples.len());
+    [(0..=last).map(|k| signal[k] + line(k)).collect(), left]
+}
+
+/// One period of a signal through the Wiener filter for white noise of this standard deviation, and a draw of the noise
+/// that is left: that part of the white noise has the share of the signal as its share of the power.
+fn filtered(period: &[f64], noise: f64, random: &mut SplitMix) -> [Vec<f64>; 2] {
+    let mut lines = transform(period);
+    let noise = noise.powi(2) * period.len() as f64;
+    let power: Vec<f64> = lines.iter().map(|line| line.norm_sqr()).collect();
+    let mut left = Vec::with_capacity(lines.len());
+    for (k, line) in lines.iter_mut().enumerate() {
+        let share = share_of_signal(&power[k.saturating_sub(AROUND)..(k + AROUND + 1).min(power.len())], noise);
+        *line *= share;
+        left.push(Complex::from_polar((share * noise).sqrt(), TAU * random.uniform()));
+    }
+    [synthesize(&lines, period.len()), synthesize(&left, period.len())]
+}
+
+/// Share of the power around a line that is not noise; zero if the power could be noise alone. The lines of a
+/// mirrored signal have one degree of freedom, so the standard deviation of the power of noise is √2 times its mean.
+fn share_of_signal(power: &[f64], noise: f64) -> f64 {
+    let count = power.len() as f64;
+    let mean = power.iter().sum::<f64>() / count;
+    if mean > noise * (1.0 + ONE_SIDED * (2.0 / count).sqrt()) {
+        1.0 - noise / mean
+    } else {
+        0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::without_noise;
+    use crate::mean::rms;
+    use crate::random::SplitMix;
+
+    const SAMPLES: usize = 8000;
+
+    fn error(truth: &[f64], signal: &[f64]) -> f64 {
+        rms(truth.iter().zip(signal).map(|(a, b)| a - b))
+    }
+
+    /// A drifting signal whose power ends at a tenth of the band keeps little more than a tenth of the noise power: its ends
+    /// leak.
+    #[test]
+    fn little_more_than_the_noise_within_the_band_of_the_signal_is_left() {
+        let tone = |f: f64, k: usize| (TAU * f * k as f64 / SAMPLES as f64 + f * f).sin();
+        let truth: Vec<f64> = (0..SAMPLES)
+            .map(|k| (1..40).map(|f| tone(10.0 * f as f64, k)).sum::<f64>() + 2e-3 * k as f64)
+            .collect();
+        let mut random = SplitMix::new(5);
+        let noisy: Vec<f64> = truth.iter().map(|own| own + 0.1 * random.normal()).collect();
+        let [filtered, left] = without_noise(&noisy, false, &mut random);
+        let (before, after) = (error(&truth, &noisy), error(&truth, &filtered));
+        assert!(after < 0.45 * before, "{before} to {after}");
+        // The draw is as large as the error that is left.
+        let drawn = rms(&left);
+        assert!((drawn / after - 1.0).abs() < 0.15, "{drawn} for {after}");
+        // Without noise, hardly anything is removed.
+        let [filtered, _] = without_noise(&truth, false, &mut random);
+        assert!(error(&truth, &filtered) < 1e-3 * before);
+    }
+}
