@@ -58,7 +58,9 @@ fn with_noise(columns: &mut [Vec<f64>; 3], mut state: u64) {
     for (column, noise) in columns.iter_mut().zip(NOISE) {
         let rms = (column.iter().map(|own| own * own).sum::<f64>() / SAMPLES as f64).sqrt();
         for value in column {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
             let uniform = (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5;
             *value += noise * rms * uniform * 12f64.sqrt();
         }
@@ -110,7 +112,11 @@ fn noise_of_the_recorded_road_is_no_effect() {
     let answer = answer(folder.path(), None);
     assert_eq!(answer["verdict"], "none", "{answer}");
     let notices = answer["notices"].as_array().unwrap();
-    let is_it = |own: &&Value| own.as_str().unwrap().contains("recorded input pad z displacement is noise");
+    let is_it = |own: &&Value| {
+        own.as_str()
+            .unwrap()
+            .contains("recorded input pad z displacement is noise")
+    };
     assert_eq!(notices.iter().filter(is_it).count(), 3, "{notices:?}");
     // With the noise that the filter leaves, the residuals are as large as expected.
     let left = answer["gap"]["held_out"]["before"].as_f64();
@@ -127,7 +133,10 @@ fn an_effect_is_found_in_spite_of_a_noisy_road() {
     let [own] = answer["effects"].as_array().unwrap().as_slice() else {
         panic!("one effect: {}", answer["effects"])
     };
-    assert_eq!((own["name"].as_str(), own["at"].as_str()), (Some("suspended_mass"), Some("body")));
+    assert_eq!(
+        (own["name"].as_str(), own["at"].as_str()),
+        (Some("suspended_mass"), Some("body"))
+    );
     for (name, truth) in [("m_pwt", m), ("k_pwt_z", k), ("c_pwt_z", c)] {
         let value = own["parameters"][name].as_f64().unwrap();
         assert!((value / truth - 1.0).abs() < 0.03, "{name} = {value}, truth {truth}");

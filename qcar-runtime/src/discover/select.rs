@@ -97,7 +97,9 @@ pub fn discover(
         return Ok(discovery);
     };
     *evidence = quieter.seen_by(found.assembly.model(), &found.explanation.refit.values)?;
-    progress(Update::Step("repeating the search without the noise of the recorded inputs"));
+    progress(Update::Step(
+        "repeating the search without the noise of the recorded inputs",
+    ));
     Ok(search(fitted(evidence)?, evidence, progress).0)
 }
 

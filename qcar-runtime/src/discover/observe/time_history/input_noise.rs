@@ -54,7 +54,11 @@ impl Quieter {
                 let removed = rms(samples.iter().zip(&filtered).map(|(a, b)| a - b)) / deviation(samples);
                 if removed > LEAST_NOISE {
                     notices.push(notice(&run.name, sensor, removed));
-                    *noisy = filtered.iter().zip(&noise).map(|(signal, noise)| signal + noise).collect();
+                    *noisy = filtered
+                        .iter()
+                        .zip(&noise)
+                        .map(|(signal, noise)| signal + noise)
+                        .collect();
                     *samples = filtered;
                 }
             }
@@ -124,7 +128,10 @@ fn filtered(period: &[f64], noise: f64, random: &mut SplitMix) -> [Vec<f64>; 2] 
     let power: Vec<f64> = lines.iter().map(|line| line.norm_sqr()).collect();
     let mut left = Vec::with_capacity(lines.len());
     for (k, line) in lines.iter_mut().enumerate() {
-        let share = share_of_signal(&power[k.saturating_sub(AROUND)..(k + AROUND + 1).min(power.len())], noise);
+        let share = share_of_signal(
+            &power[k.saturating_sub(AROUND)..(k + AROUND + 1).min(power.len())],
+            noise,
+        );
         *line *= share;
         left.push(Complex::from_polar((share * noise).sqrt(), TAU * random.uniform()));
     }
