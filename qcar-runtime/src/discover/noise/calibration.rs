@@ -25,36 +25,35 @@ pub enum Form {
     Offset,
 }
 
-/// Number of shelves of a calibration curve. Each extends over a decade, a band over one to two.
-pub const CORNERS: usize = 3;
+/// Number of shelves of a calibration curve: about one in each octave of the band of a rig. A shelf extends over two
+/// octaves, so those between two corners are represented too.
+pub const CORNERS: usize = 6;
 
-/// Prior standard deviation of the height of a shelf. The sensitivity of piezoelectric accelerometers changes by about
-/// 2 % in a decade (data sheets of Metra, and others). This is taken as two standard deviations: three shelves in 1.75
-/// decades.
-const SHELF: f64 = 0.01;
+/// A shelf with its prior. Data sheets give the frequency range of an accelerometer as the one in which its sensitivity
+/// keeps within 5 %. This is taken as two standard deviations of all six shelves together.
+const fn shelf(place: usize) -> Shape {
+    Shape {
+        form: Form::Shelf(place),
+        sigma: 0.01,
+    }
+}
 
 /// Priors of a sensor: 0.7 % of gain; a smooth calibration curve; 0.2° of phase; 50 µs of delay; an offset in time
 /// histories of a tenth of the reading.
 ///
 /// Thesis section 3.4 uses capacitive accelerometers. Their data sheets give 0.5 to 1 % of gain and the phase of a
 /// first-order filter at several hundred hertz.
-pub const SENSOR: [Shape; 7] = [
+pub const SENSOR: [Shape; 10] = [
     Shape {
         form: Form::Gain,
         sigma: 0.007,
     },
-    Shape {
-        form: Form::Shelf(0),
-        sigma: SHELF,
-    },
-    Shape {
-        form: Form::Shelf(1),
-        sigma: SHELF,
-    },
-    Shape {
-        form: Form::Shelf(2),
-        sigma: SHELF,
-    },
+    shelf(0),
+    shelf(1),
+    shelf(2),
+    shelf(3),
+    shelf(4),
+    shelf(5),
     Shape {
         form: Form::Phase,
         sigma: 0.003,
