@@ -90,8 +90,8 @@ fn answer(folder: &Path, hanging: Option<[f64; 3]>) -> Value {
         let mut columns = run(place, level, hanging);
         with_noise(&mut columns, place as u64);
         let mut table = "time,pad,body,wheel\n".to_owned();
-        for sample in 0..SAMPLES {
-            let [road, body, wheel] = [0, 1, 2].map(|own: usize| columns[own][sample]);
+        let [road, body, wheel] = &columns;
+        for (sample, ((road, body), wheel)) in road.iter().zip(body).zip(wheel).enumerate() {
             table += &format!("{},{road},{body},{wheel}\n", sample as f64 / RATE);
         }
         fs::write(folder.join(format!("run_{place}.csv")), table).unwrap();

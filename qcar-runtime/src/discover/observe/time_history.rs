@@ -2,8 +2,6 @@
 
 // Sensor noise of a record.
 mod noise;
-// Recorded inputs without their noise.
-mod input_noise;
 // Initial states and restarts of a record.
 mod restarts;
 // Measured records.
@@ -11,5 +9,5 @@ mod measured;
 // Predicted records.
 mod predicted;
 
-pub use input_noise::Quieter;
+pub use noise::noise;
 pub use predicted::{history, replayed};

@@ -10,12 +10,12 @@ use std::f64::consts::TAU;
 
 use nalgebra::Complex;
 
-use super::noise::noise;
+use super::predict::predict;
+use super::series::LEAST_NOISE;
+use super::time_history::noise;
+use super::{Evidence, PredictError, Stimulus};
 use crate::campaign::Role;
 use crate::discover::numbers::ONE_SIDED;
-use crate::discover::observe::predict::predict;
-use crate::discover::observe::series::LEAST_NOISE;
-use crate::discover::observe::{Evidence, PredictError, Stimulus};
 use crate::mean::{deviation, rms};
 use crate::model::Model;
 use crate::random::SplitMix;
