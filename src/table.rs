@@ -27,7 +27,7 @@ impl Table {
 
     /// Adds a row, with as many cells as there are headings.
     pub fn row(&mut self, cells: Vec<String>) {
-        debug_assert_eq!(cells.len(), self.rows[0].len());
+        assert_eq!(cells.len(), self.rows[0].len());
         self.rows.push(cells);
     }
 

@@ -1,6 +1,7 @@
 //! Every effect that is shipped reads, prints as itself, and compiles at each of its places in each model.
 
 use std::path::{Path, PathBuf};
+use std::thread;
 
 use qcar_dsl::check::Checked;
 use qcar_dsl::compile::check;
@@ -84,13 +85,19 @@ fn every_effect_prints_as_the_same_tree() {
 
 #[test]
 fn every_effect_compiles_wherever_it_applies() {
-    for file in files("axles") {
-        let model = checked(&file);
-        for effect in effects().into_iter().chain(in_folder("laws")) {
-            for patched in effect.candidates(&model, &|_| None) {
-                let warnings = patched.model.warnings();
-                assert!(warnings.diagnostics.is_empty(), "{}\n{warnings}", patched.model.name);
-            }
+    // One thread for each model: on one alone this test outlasts all others together.
+    thread::scope(|scope| {
+        for file in files("axles") {
+            scope.spawn(move || compiles_with_every_effect(&checked(&file)));
+        }
+    });
+}
+
+fn compiles_with_every_effect(model: &Checked) {
+    for effect in effects().into_iter().chain(in_folder("laws")) {
+        for patched in effect.candidates(model, &|_| None) {
+            let warnings = patched.model.warnings();
+            assert!(warnings.diagnostics.is_empty(), "{}\n{warnings}", patched.model.name);
         }
     }
 }

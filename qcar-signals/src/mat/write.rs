@@ -92,7 +92,7 @@ pub fn v5(description: &str, variables: &[(String, Array)]) -> Result<Vec<u8>, S
     // No subsystem data.
     file[116..].fill(0);
     file.extend([0x00, 0x01, b'I', b'M']);
-    debug_assert_eq!(file.len(), HEADER);
+    assert_eq!(file.len(), HEADER);
     let names = names(variables.iter().map(|(name, _)| &**name))?;
     for (name, (_, array)) in names.iter().zip(variables) {
         file.extend(matrix(name, array)?);
