@@ -8,6 +8,10 @@ use memchr::{memchr, memchr3};
 
 use crate::error::{Fault, Place, Read};
 
+/// Most cells of a row: four times as many as a sheet of Excel has. A row of separators alone would take many times its
+/// length in memory.
+const MOST_CELLS: usize = 1 << 16;
+
 /// The cells of a row without spaces around them, and its line.
 #[derive(Clone, Default)]
 pub(super) struct Row<'a> {
@@ -45,6 +49,16 @@ impl<'a> Rows<'a> {
             let cell = self.cell()?;
             if self.delimiter != b' ' || !cell.is_empty() {
                 row.cells.push(cell);
+            }
+            if row.cells.len() > MOST_CELLS {
+                let found = format!("more than {MOST_CELLS} cells in a row");
+                let remedy = "export the table with one row a sample";
+                return Err(Fault::new(
+                    Place::Line(row.line),
+                    found,
+                    "a column for each channel",
+                    remedy,
+                ));
             }
             if self.byte() != Some(self.delimiter) {
                 self.end_of_line();
@@ -167,6 +181,16 @@ mod tests {
                 .collect();
             assert_eq!(all(text, delimiter), expected, "{text:?}");
         }
+    }
+
+    #[test]
+    fn a_row_without_end_is_refused() {
+        let text = "1,".repeat(super::MOST_CELLS + 1);
+        let fault = Rows::new(&text, b',')
+            .read(&mut Row::default())
+            .unwrap_err()
+            .to_string();
+        assert!(fault.contains("more than 65536 cells"), "{fault}");
     }
 
     #[test]
