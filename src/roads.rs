@@ -50,9 +50,8 @@ const CLASSES: [(&str, Class); 8] = [
 const SPEEDS: std::ops::RangeInclusive<f64> = 0.5..=100.0;
 /// Shortest ride, s: about one oscillation of the body, with spectral lines at each hertz.
 const SHORTEST: f64 = 1.0;
-/// Requirement for a road, and remedy.
-const DRIVABLE: &str = "a road to drive over";
-const SAMPLED: &str = "give a road that is sampled finely enough and long enough";
+/// Requirement for a road.
+const DRIVABLE: &str = "heights on which a tyre can roll";
 /// Longest ride, s: a road of ISO 8608 is a sum of sines, and a record is kept in memory.
 const LONGEST: f64 = 600.0;
 
@@ -136,7 +135,7 @@ impl RequestedRoad {
         match &self.ground {
             Ground::Random(class, seed) => {
                 let course = Course::random(*class, *seed, self.speed, self.duration);
-                course.map_err(|error| self.problem(error.to_string(), DRIVABLE, SAMPLED).into())
+                course.map_err(|error| self.problem(error.to_string(), DRIVABLE, error.remedy()).into())
             }
             Ground::Measured(file, source) => self.along(file, source.as_deref()),
         }
@@ -184,7 +183,7 @@ pub fn courses(roads: &[RequestedRoad], beside: &[Course]) -> Result<Vec<Course>
 }
 
 fn no_road(file: &Path, error: &RoadError) -> InputError {
-    Problem::new(file, Place::File, error.to_string(), DRIVABLE, SAMPLED).into()
+    Problem::new(file, Place::File, error.to_string(), DRIVABLE, error.remedy()).into()
 }
 
 /// A name that may be part of a file name.

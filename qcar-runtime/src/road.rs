@@ -55,15 +55,13 @@ pub enum RoadError {
     NotMonotonic { sample: usize, before: f64, x: f64 },
     #[error("all points of the road lie at x = {x} m; expected a road with a length")]
     NoLength { x: f64 },
-    #[error(
-        "slope {slope} at x = {x} m contradicts the heights there, which rise by {rise}; slope is that of the segment to the right of its point, and a step stands alone"
-    )]
+    #[error("slope {slope} at x = {x} m contradicts the heights there, which rise by {rise}")]
     SlopeContradictsHeight { x: f64, slope: f64, rise: f64 },
     #[error(
-        "the road is rougher than its sampling: leaving out a sample changes it by {share:.2} of its own standard deviation, expected at most {limit}; sample it finer"
+        "the road is rougher than its sampling: leaving out a sample changes it by {share:.2} of its own standard deviation, more than {limit}"
     )]
     Rough { share: f64, limit: f64 },
-    #[error("the road ends at x = {end} m, but the run reaches x = {needed} m; lengthen the road or shorten the run")]
+    #[error("the road ends at x = {end} m, but the run reaches x = {needed} m")]
     TooShort { end: f64, needed: f64 },
     #[error("{name} must be {expected}, found {value}")]
     Shape {
@@ -71,6 +69,21 @@ pub enum RoadError {
         expected: &'static str,
         value: f64,
     },
+}
+
+impl RoadError {
+    /// How the road can be mended.
+    #[must_use]
+    pub fn remedy(&self) -> &'static str {
+        match self {
+            Self::Rough { .. } => "sample the profile finer, or smooth it",
+            Self::SlopeContradictsHeight { .. } => {
+                "leave out the column `slope`, or give the slope of the segment to the right of each point; a step stands alone"
+            }
+            Self::TooShort { .. } => "lengthen the road, or shorten the ride",
+            _ => "correct the profile: finite numbers, from left to right",
+        }
+    }
 }
 
 impl Road {

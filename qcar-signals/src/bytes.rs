@@ -246,9 +246,9 @@ pub(crate) fn heads<const N: usize>(data: &[u8], stride: usize) -> impl Iterator
 }
 
 /// Text of unknown encoding: UTF-8 if valid, otherwise Windows-1252, which includes Latin-1.
-pub(crate) fn text(bytes: &[u8]) -> String {
+pub(crate) fn text(bytes: &[u8]) -> Cow<'_, str> {
     match std::str::from_utf8(bytes) {
-        Ok(text) => text.into(),
+        Ok(text) => Cow::Borrowed(text),
         Err(_) => bytes.iter().map(|&byte| windows_1252(byte)).collect(),
     }
 }

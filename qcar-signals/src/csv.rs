@@ -1,10 +1,13 @@
 //! Text tables: comma, semicolon, tab, bar or spaces between columns, decimal point or comma, with or without a row of units,
 //! in UTF-8, UTF-16 or Windows-1252.
 
-use csv::{ReaderBuilder, StringRecord, Trim};
+mod rows;
+
+use std::borrow::Cow;
+
+use rows::{Row, Rows};
 
 use crate::bytes::text;
-use crate::decimal;
 use crate::error::{Fault, Place, Read};
 use crate::signal::Recording;
 use crate::table::{Cell, Column, Filled, Layout};
@@ -16,11 +19,14 @@ const HEAD: usize = 200;
 pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
     let text = decoded(bytes)?;
     let delimiter = delimiter(&text);
-    let head = head(&text, delimiter)?;
+    let head = match head(&text, delimiter) {
+        Err(_) if is_binary(&text) => return Err(of_no_format(bytes)),
+        head => head?,
+    };
     let decimals = Decimals::of(&head, delimiter)?;
     let cells: Vec<Vec<Cell>> = head
         .iter()
-        .map(|(_, row)| row.iter().map(|cell| decimals.cell(cell)).collect())
+        .map(|row| row.cells.iter().map(|cell| decimals.cell(cell)).collect())
         .collect();
     let Some(layout) = Layout::find(&cells) else {
         if is_binary(&text) {
@@ -30,8 +36,11 @@ pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
         let remedy = "export the table with one row a sample; separators may be , ; tab | or spaces";
         return Err(Fault::new(Place::File, found, "names and columns of numbers", remedy));
     };
-    let (first_line, names_line) = (head[layout.first].0, head[..layout.first].last().map_or(1, |row| row.0));
-    let (filled, lines) = fill(&text, delimiter, decimals, layout.columns, first_line)?;
+    let (first_line, names_line) = (
+        head[layout.first].line,
+        head[..layout.first].last().map_or(1, |row| row.line),
+    );
+    let (filled, lines) = fill(Rows::new(&text, delimiter), decimals, layout.columns, first_line)?;
     let mut recording = Recording::new("text table");
     let place = |column: &Column, row: Option<usize>| {
         let line = row.and_then(|row| lines.get(row)).copied().unwrap_or(names_line);
@@ -58,11 +67,11 @@ fn of_no_format(bytes: &[u8]) -> Box<Fault> {
 }
 
 /// The text, without its byte order mark.
-fn decoded(bytes: &[u8]) -> Read<String> {
+fn decoded(bytes: &[u8]) -> Read<Cow<'_, str>> {
     let utf16 = |order: fn([u8; 2]) -> u16| {
         let units = bytes[2..].chunks_exact(2).map(|two| order([two[0], two[1]]));
         char::decode_utf16(units)
-            .collect::<Result<String, _>>()
+            .collect::<Result<Cow<'_, str>, _>>()
             .map_err(|_| Fault::damaged(Place::File, "a UTF-16 text with half a character", "whole characters"))
     };
     match bytes {
@@ -84,64 +93,36 @@ fn delimiter(text: &str) -> u8 {
         .map_or(b' ', |delimiter| delimiter as u8)
 }
 
-type Numbered = (u64, StringRecord);
-
-/// The rows with their lines. Several spaces count as one separator.
-fn rows(text: &str, delimiter: u8) -> impl Iterator<Item = Read<Numbered>> {
-    let mut reader = ReaderBuilder::new();
-    let reader = reader
-        .delimiter(delimiter)
-        .has_headers(false)
-        .flexible(true)
-        .trim(Trim::All);
-    reader.from_reader(text.as_bytes()).into_records().map(move |row| {
-        let row = row.map_err(|error| {
-            let line = error.position().map_or(0, |position| position.line());
-            Fault::damaged(Place::Line(line), error.to_string(), "a row of cells")
-        })?;
-        let line = row.position().map_or(0, |position| {
-            // The position is that of the empty lines before the row, and of the line feed after a carriage return.
-            let before = text.as_bytes()[position.byte() as usize..].iter();
-            let ends = before.take_while(|byte| matches!(byte, b'\r' | b'\n'));
-            position.line() + ends.filter(|byte| **byte == b'\n').count() as u64
-        });
-        let row = match delimiter {
-            b' ' => row.iter().filter(|cell| !cell.is_empty()).collect(),
-            _ => row,
-        };
-        Ok((line, row))
-    })
-}
-
-fn head(text: &str, delimiter: u8) -> Read<Vec<Numbered>> {
-    rows(text, delimiter).take(HEAD).collect()
+fn head(text: &str, delimiter: u8) -> Read<Vec<Row<'_>>> {
+    let (mut rows, mut row, mut head) = (Rows::new(text, delimiter), Row::default(), Vec::new());
+    while head.len() < HEAD && rows.read(&mut row)? {
+        head.push(row.clone());
+    }
+    Ok(head)
 }
 
 /// The columns of numbers from a line on, and the line of each row.
-fn fill(text: &str, delimiter: u8, decimals: Decimals, columns: Vec<Column>, first: u64) -> Read<(Filled, Vec<u64>)> {
+fn fill(mut rows: Rows<'_>, decimals: Decimals, columns: Vec<Column>, first: u64) -> Read<(Filled, Vec<u64>)> {
+    let width = columns.last().map_or(0, |column| column.index + 1);
     let mut numbers = vec![Vec::new(); columns.len()];
-    let mut lines = Vec::new();
-    for row in rows(text, delimiter).skip_while(|row| row.as_ref().is_ok_and(|(line, _)| *line < first)) {
-        let (line, row) = row?;
-        let width = columns.last().map_or(0, |column| column.index + 1);
-        if row.iter().all(str::is_empty) {
+    let (mut row, mut lines) = (Row::default(), Vec::new());
+    while rows.read(&mut row)? {
+        let Row { line, ref cells } = row;
+        if line < first || cells.iter().all(|cell| cell.is_empty()) {
             continue;
         }
-        if row.len() < width || row.iter().skip(width).any(|cell| !cell.is_empty()) {
-            let found = format!("{} columns", row.len());
+        if cells.len() < width || cells[width..].iter().any(|cell| !cell.is_empty()) {
+            let found = format!("{} columns", cells.len());
             let remedy = "complete the row, or delete what is no part of the table";
-            return Err(Fault::new(
-                Place::Line(line),
-                found,
-                format!("{width} columns as above"),
-                remedy,
-            ));
+            let expected = format!("{width} columns as above");
+            return Err(Fault::new(Place::Line(line), found, expected, remedy));
         }
         for (column, numbers) in columns.iter().zip(&mut numbers) {
-            numbers.push(decimals.number(&row[column.index]).ok_or_else(|| {
+            let cell = &cells[column.index];
+            numbers.push(decimals.number(cell).ok_or_else(|| {
                 let place = Place::Cell(line, column.name.clone());
                 let remedy = "correct the cell, or leave it empty";
-                Fault::new(place, format!("`{}`", &row[column.index]), decimals.expected(), remedy)
+                Fault::new(place, format!("`{cell}`"), decimals.expected(), remedy)
             })?);
         }
         lines.push(line);
@@ -161,7 +142,7 @@ enum Decimals {
 impl Decimals {
     /// The notation of the numbers in the upper rows. If both are possible, a single comma or point is the decimal
     /// separator.
-    fn of(head: &[Numbered], delimiter: u8) -> Read<Decimals> {
+    fn of(head: &[Row<'_>], delimiter: u8) -> Read<Decimals> {
         if delimiter == b',' {
             return Ok(Decimals::Point);
         }
@@ -169,11 +150,11 @@ impl Decimals {
         let mut point = None;
         for (line, cell) in head
             .iter()
-            .flat_map(|(line, row)| row.iter().map(move |cell| (line, cell)))
+            .flat_map(|row| row.cells.iter().map(move |cell| (row.line, cell)))
         {
             match (Decimals::Point.number(cell), Decimals::Comma.number(cell)) {
-                (None, Some(_)) => comma = comma.or(Some((*line, cell))),
-                (Some(_), None) => point = point.or(Some((*line, cell))),
+                (None, Some(_)) => comma = comma.or(Some((line, cell))),
+                (Some(_), None) => point = point.or(Some((line, cell))),
                 _ => {}
             }
         }
@@ -193,7 +174,7 @@ impl Decimals {
             (None, None) => {
                 let numbers = || {
                     head.iter()
-                        .flat_map(|(_, row)| row.iter())
+                        .flat_map(|row| &row.cells)
                         .filter(|cell| looks_like_a_number(cell))
                 };
                 let only_commas = numbers().any(|cell| cell.contains(',')) && !numbers().any(|cell| cell.contains('.'));
@@ -213,7 +194,7 @@ impl Decimals {
     /// The number in a cell, NaN for a missing one; `None` if the cell contains anything else.
     fn number(self, cell: &str) -> Option<f64> {
         let (decimal, thousands) = self.signs();
-        if let Some(number) = decimal::exact(cell.as_bytes(), decimal as u8, b"eE") {
+        if let Some(number) = self.plain_number(cell) {
             return Some(number);
         }
         let cell = cell.trim();
@@ -233,6 +214,27 @@ impl Decimals {
         let grouped = (1..=3).contains(&leading.len()) && leading != "0" && groups.all(|group| group.len() == 3);
         let plain = format!("{}.{fraction}", whole.replace(thousands, ""));
         grouped.then(|| plain.parse().ok()).flatten()
+    }
+
+    /// The number in a cell without separated thousands and with at most 32 characters, as almost all are.
+    fn plain_number(self, cell: &str) -> Option<f64> {
+        let number = match self {
+            Decimals::Point => fast_float2::parse(cell).ok(),
+            Decimals::Comma => {
+                let mut with_point = [0; 32];
+                let with_point = with_point.get_mut(..cell.len())?;
+                for (own, byte) in with_point.iter_mut().zip(cell.bytes()) {
+                    *own = match byte {
+                        b',' => b'.',
+                        b'.' => b',',
+                        other => other,
+                    };
+                }
+                fast_float2::parse(with_point).ok()
+            }
+        };
+        // `inf` and `nan` are numbers to the parser.
+        number.filter(|number: &f64| number.is_finite())
     }
 
     /// The sign before decimals, and that between thousands.

@@ -116,9 +116,11 @@ impl Fault {
         Fault::new(place, found, expected, "the file is damaged: copy or export it again")
     }
 
-    /// The same fault for this channel, unless it already names one.
+    /// The same fault for this channel, unless it already names one, or the channel has no name.
     pub(crate) fn of(mut self: Box<Self>, channel: &str) -> Box<Self> {
-        self.channel.get_or_insert_with(|| channel.into());
+        if !channel.is_empty() {
+            self.channel.get_or_insert_with(|| channel.into());
+        }
         self
     }
 }

@@ -24,7 +24,6 @@ pub mod content;
 // Checked access to the bytes of a file.
 mod bytes;
 // Decimal numbers in a text.
-mod decimal;
 // Spellings of units.
 mod units;
 // Conversion of units to SI.

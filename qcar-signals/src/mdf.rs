@@ -25,7 +25,7 @@ use crate::bytes::Bytes;
 use crate::error::{Fault, Place, Read};
 use crate::find::Wanted;
 use crate::samples::Samples;
-use crate::signal::{Recording, Signal, Source, TimeBase, evenly};
+use crate::signal::{Recording, Signal, Source, Steps, TimeBase, evenly};
 use crate::summary::Summary;
 
 use conversion::Conversion;
@@ -104,6 +104,8 @@ enum Column<'c> {
     Kept(Vec<f64>),
     /// A summary of the physical values, with a buffer for those of a piece.
     Summarised(&'c Conversion, Summary, Vec<f64>),
+    /// Times that are not kept, with the same buffer.
+    Passing(&'c Conversion, Steps, Vec<f64>),
 }
 
 impl Column<'_> {
@@ -115,6 +117,12 @@ impl Column<'_> {
                 field.values(piece, values);
                 conversion.apply(values);
                 summary.add(values.iter().copied());
+            }
+            Column::Passing(conversion, steps, values) => {
+                values.clear();
+                field.values(piece, values);
+                conversion.apply(values);
+                steps.add(values);
             }
         }
     }
@@ -247,12 +255,20 @@ fn check_overlap(group: &str, channels: &[Channel], records: &Records) -> Read<(
     ))
 }
 
+/// What was read of a channel of times.
+enum Times {
+    /// The stored values.
+    Stored(Vec<f64>),
+    /// The range of their steps.
+    Passed(Steps),
+}
+
 /// The values of a group's channels.
 struct Columns {
     /// Samples of each channel.
     samples: Vec<Samples>,
-    /// Stored values of each channel of times; `None` if no channel of the group is wanted.
-    times: Option<Vec<Vec<f64>>>,
+    /// Of each channel of times; `None` if no channel of the group is wanted.
+    times: Option<Vec<Times>>,
 }
 
 /// Reads the wanted channels of a group.
@@ -266,9 +282,10 @@ fn read_columns(group: &str, channels: &[Channel], records: &Records, wanted: &W
     let (mut places, mut columns) = (Vec::new(), Vec::new());
     for (place, channel) in channels.iter().enumerate().filter(|(_, channel)| is_read(channel)) {
         if let (Ok(field), Ok(conversion)) = (&channel.field, &channel.conversion) {
-            let column = match channel.role == Role::Values && summarise {
-                true => records.summarised(conversion),
-                false => records.kept(),
+            let column = match (summarise, channel.role) {
+                (true, Role::Values) => records.summarised(conversion),
+                (true, Role::Time) => Column::Passing(conversion, Steps::default(), Vec::new()),
+                (false, _) => records.kept(),
             };
             places.push(place);
             columns.push((field, column));
@@ -276,7 +293,7 @@ fn read_columns(group: &str, channels: &[Channel], records: &Records, wanted: &W
     }
     records.fill(&mut columns)?;
     let mut samples: Vec<Samples> = channels.iter().map(|_| Samples::default()).collect();
-    let mut stored_times = vec![Vec::new(); channels.len()];
+    let mut times: Vec<Times> = channels.iter().map(|_| Times::Stored(Vec::new())).collect();
     for (place, (_, column)) in places.into_iter().zip(columns) {
         let channel = &channels[place];
         match (column, &channel.conversion) {
@@ -286,22 +303,23 @@ fn read_columns(group: &str, channels: &[Channel], records: &Records, wanted: &W
                 conversion.apply(&mut values);
                 samples[place] = values.into();
             }
-            (Column::Kept(values), _) => stored_times[place] = values,
+            (Column::Kept(values), _) => times[place] = Times::Stored(values),
+            (Column::Passing(_, steps, _), _) => times[place] = Times::Passed(steps),
         }
     }
     Ok(Columns {
         samples,
-        times: is_any.then_some(stored_times),
+        times: is_any.then_some(times),
     })
 }
 
 /// The time base of a group from its channel of times; unknown if no channel is wanted. Fails with the place of the
 /// channel of times and the reason.
-fn time_base(channels: &[Channel], stored_times: Option<Vec<Vec<f64>>>) -> Result<TimeBase, (Place, String)> {
+fn time_base(channels: &[Channel], read: Option<Vec<Times>>) -> Result<TimeBase, (Place, String)> {
     let mut time = TimeBase::Unknown;
-    for (master, stored) in channels.iter().zip(stored_times.unwrap_or_default()) {
+    for (master, read) in channels.iter().zip(read.unwrap_or_default()) {
         if master.role == Role::Time {
-            time = times(master, stored).map_err(|why| (master.place.clone(), why))?;
+            time = times(master, read).map_err(|why| (master.place.clone(), why))?;
         }
     }
     Ok(time)
@@ -347,8 +365,8 @@ impl Channel {
     }
 }
 
-/// The times of a group in seconds from the stored values, or why it has none.
-fn times(master: &Channel, mut stored: Vec<f64>) -> Result<TimeBase, String> {
+/// The times of a group in seconds, or why it has none.
+fn times(master: &Channel, read: Times) -> Result<TimeBase, String> {
     let (field, conversion) = match (&master.field, &master.conversion) {
         (Ok(field), Ok(conversion)) => (field, conversion),
         (Err(why), _) | (_, Err(why)) => return Err(why.clone()),
@@ -356,6 +374,12 @@ fn times(master: &Channel, mut stored: Vec<f64>) -> Result<TimeBase, String> {
     if let (Field::Index, Conversion::Linear { offset, factor }) = (field, conversion) {
         return evenly(*offset, *factor, master.place.clone()).map_err(|fault| fault.found);
     }
-    conversion.apply(&mut stored);
-    TimeBase::from_times(stored).map_err(|(at, found)| format!("{found} in sample {}", at + 1))
+    let base = match read {
+        Times::Stored(mut stored) => {
+            conversion.apply(&mut stored);
+            TimeBase::from_times(stored)
+        }
+        Times::Passed(steps) => steps.time_base(),
+    };
+    base.map_err(|(at, found)| format!("{found} in sample {}", at + 1))
 }

@@ -57,6 +57,11 @@ pub enum TimeBase {
     },
     /// These times, finite and never decreasing; one for each sample.
     Times(Arc<Vec<f64>>),
+    /// Unevenly spaced, and not kept: only if summaries were [`Wanted`](crate::find::Wanted).
+    Uneven {
+        /// Time of the first sample, s.
+        start: f64,
+    },
     /// Not in the file.
     Unknown,
 }
@@ -176,15 +181,7 @@ impl TimeBase {
     /// # Errors
     /// Fails at the first time that is not finite or earlier than the one before, with its position and the fault.
     pub(crate) fn from_times(times: Vec<f64>) -> Result<Self, (usize, String)> {
-        for (at, &time) in times.iter().enumerate() {
-            let before = if at == 0 { f64::NEG_INFINITY } else { times[at - 1] };
-            if !time.is_finite() {
-                return Err((at, "no time".into()));
-            }
-            if time < before {
-                return Err((at, format!("the time {time} s after {before} s")));
-            }
-        }
+        Steps::of(&times).checked()?;
         Ok(TimeBase::Times(Arc::new(times)))
     }
 
@@ -193,6 +190,7 @@ impl TimeBase {
         match self {
             TimeBase::Even { start, .. } => Some(*start),
             TimeBase::Times(times) => times.first().copied(),
+            TimeBase::Uneven { start } => Some(*start),
             TimeBase::Unknown => None,
         }
     }
@@ -201,16 +199,82 @@ impl TimeBase {
     pub fn rate(&self) -> Option<f64> {
         match self {
             TimeBase::Even { step, .. } => Some(1.0 / step),
-            TimeBase::Times(times) => {
-                let (&first, &last) = (times.first()?, times.last()?);
-                let mean = (last - first) / (times.len() - 1) as f64;
-                let even = times
-                    .windows(2)
-                    .all(|two| (two[1] - two[0] - mean).abs() <= 0.01 * mean);
-                (even && mean > 0.0).then_some(1.0 / mean)
-            }
-            TimeBase::Unknown => None,
+            TimeBase::Times(times) => Steps::of(times).even().map(|step| 1.0 / step),
+            TimeBase::Uneven { .. } | TimeBase::Unknown => None,
         }
+    }
+}
+
+/// Times of samples that pass by in pieces, s: of them, only the range of their steps is kept.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Steps {
+    count: usize,
+    first: f64,
+    last: f64,
+    /// Shortest and longest step.
+    range: Option<(f64, f64)>,
+    /// Position of the first time that is not finite or earlier than the one before, and the fault.
+    fault: Option<(usize, String)>,
+}
+
+impl Steps {
+    fn of(times: &[f64]) -> Self {
+        let mut steps = Steps::default();
+        steps.add(times);
+        steps
+    }
+
+    /// Adds the next times.
+    pub(crate) fn add(&mut self, times: &[f64]) {
+        for &time in times {
+            if self.fault.is_some() {
+                return;
+            }
+            self.fault = self.fault_of(time).map(|fault| (self.count, fault));
+            if self.count == 0 {
+                self.first = time;
+            } else {
+                let step = time - self.last;
+                let (least, most) = self.range.unwrap_or((step, step));
+                self.range = Some((least.min(step), most.max(step)));
+            }
+            self.last = time;
+            self.count += 1;
+        }
+    }
+
+    fn fault_of(&self, time: f64) -> Option<String> {
+        if !time.is_finite() {
+            return Some("no time".into());
+        }
+        (self.count > 0 && time < self.last).then(|| format!("the time {time} s after {} s", self.last))
+    }
+
+    fn checked(self) -> Result<Self, (usize, String)> {
+        match self.fault {
+            Some(fault) => Err(fault),
+            None => Ok(self),
+        }
+    }
+
+    /// The mean step if every step is within 1 % of it.
+    fn even(&self) -> Option<f64> {
+        let (least, most) = self.range?;
+        let mean = (self.last - self.first) / (self.count - 1) as f64;
+        (mean > 0.0 && most - mean <= 0.01 * mean && mean - least <= 0.01 * mean).then_some(mean)
+    }
+
+    /// What is known of the times.
+    ///
+    /// # Errors
+    /// Fails as [`TimeBase::from_times`] does.
+    pub(crate) fn time_base(self) -> Result<TimeBase, (usize, String)> {
+        let own = self.checked()?;
+        Ok(match (own.count, own.even()) {
+            (0, _) => TimeBase::Unknown,
+            (_, Some(step)) => TimeBase::Even { start: own.first, step },
+            (_, None) => TimeBase::Uneven { start: own.first },
+        })
     }
 }
 
@@ -224,4 +288,44 @@ pub(crate) fn evenly(start: f64, step: f64, place: Place) -> Read<TimeBase> {
     }
     let found = format!("a start of {start} s and a step of {step} s");
     Err(Fault::damaged(place, found, "a finite start and a positive step"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Steps, TimeBase};
+
+    /// As the definition of an even time base says, of all times at once.
+    fn rate(times: &[f64]) -> Option<f64> {
+        let mean = (times.last()? - times.first()?) / (times.len() - 1) as f64;
+        let even = times
+            .windows(2)
+            .all(|two| (two[1] - two[0] - mean).abs() <= 0.01 * mean);
+        (even && mean > 0.0).then_some(1.0 / mean)
+    }
+
+    #[test]
+    fn times_that_pass_by_tell_what_kept_ones_do() {
+        let even: Vec<f64> = (0..100).map(|at| 0.5 + f64::from(at) * 1e-3).collect();
+        let mut jittered = even.clone();
+        jittered[50] += 0.9e-5;
+        let mut gap = even.clone();
+        gap[99] += 1e-3;
+        for times in [even, jittered, gap, vec![1.0, 1.0], vec![3.0], vec![]] {
+            let mut steps = Steps::default();
+            times.chunks(7).for_each(|piece| steps.add(piece));
+            let passed = steps.time_base().unwrap();
+            let kept = TimeBase::from_times(times.clone()).unwrap();
+            assert_eq!(passed.start(), times.first().copied());
+            assert_eq!((passed.rate(), kept.rate()), (rate(&times), rate(&times)));
+        }
+        for (times, at, found) in [
+            ([0.0, 1.0, 0.5], 2, "the time 0.5 s after 1 s"),
+            ([0.0, f64::NAN, 0.5], 1, "no time"),
+        ] {
+            let mut steps = Steps::default();
+            times.iter().for_each(|time| steps.add(&[*time]));
+            assert_eq!(steps.time_base(), Err((at, found.into())));
+            assert_eq!(TimeBase::from_times(times.to_vec()), Err((at, found.into())));
+        }
+    }
 }

@@ -8,7 +8,6 @@ use std::str::FromStr;
 use memchr::memchr;
 
 use crate::bytes::{Number, Order, text};
-use crate::decimal;
 use crate::error::{Fault, Place, Read};
 use crate::signal::{Recording, Signal, Source, TimeBase, evenly};
 
@@ -70,7 +69,7 @@ impl Line<'_> {
     }
 
     fn text(&self) -> String {
-        text(self.bytes)
+        text(self.bytes).into()
     }
 
     fn is_border(&self) -> bool {
@@ -173,7 +172,7 @@ fn integer<T: FromStr>(line: Line, from: usize, to: usize, what: &str) -> Read<T
 fn number(line: Line, from: usize, to: usize, what: &str) -> Read<f64> {
     let field = &line.bytes[from.min(line.bytes.len())..to.min(line.bytes.len())];
     let other = || text(field).trim().replace(['D', 'd'], "e").parse().ok();
-    let parsed = decimal::exact(field, b'.', b"eEdD").or_else(other);
+    let parsed = fast_float2::parse(field.trim_ascii()).ok().or_else(other);
     parsed.ok_or_else(|| no_number(line, from, to, what))
 }
 

@@ -35,7 +35,7 @@ fn bits(signal: &Signal) -> (Vec<u64>, Option<Vec<u64>>) {
     let times = match &signal.time {
         TimeBase::Even { start, step } => Some(vec![*start, *step]),
         TimeBase::Times(times) => Some(times.to_vec()),
-        TimeBase::Unknown => None,
+        TimeBase::Uneven { .. } | TimeBase::Unknown => None,
     };
     let own = signal.samples.iter().map(f64::to_bits).collect();
     (own, times.map(|times| times.into_iter().map(f64::to_bits).collect()))

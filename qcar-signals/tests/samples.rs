@@ -124,7 +124,7 @@ fn agree_in_time(what: &str, channel: &Json, signal: &Signal) {
             assert_eq!(times.len(), count, "{what}");
             (times[0], times[count - 1])
         }
-        TimeBase::Unknown => panic!("{what}: no time base"),
+        TimeBase::Uneven { .. } | TimeBase::Unknown => panic!("{what}: no time base"),
     };
     for (found, expected) in [(start, &time["start"]), (end, &time["end"])] {
         let expected = expected.as_f64().unwrap();
@@ -463,6 +463,11 @@ fn a_cell_that_is_no_number_is_named() {
             vec!["`1,5`", "`2.5`", "line 3", "same decimal sign"],
         ),
         ("nothing\nto see\n", vec!["no row of numbers"]),
+        (
+            "t,a\n0,\"1.5\n1,2.5\n",
+            vec!["line 2", "quotation mark that is never closed"],
+        ),
+        ("t,a\r0,1.5\r1,2\r2,x\r", vec!["line 4, column `a`", "`x`"]),
     ];
     for (table, parts) in cases {
         says(&recognise(table.as_bytes()).unwrap_err().to_string(), &parts);

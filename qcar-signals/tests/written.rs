@@ -21,7 +21,7 @@ fn times(signal: &Signal) -> Vec<f64> {
     match &signal.time {
         TimeBase::Even { start, step } => (0..signal.samples.len()).map(|at| start + at as f64 * step).collect(),
         TimeBase::Times(times) => times.to_vec(),
-        TimeBase::Unknown => Vec::new(),
+        TimeBase::Uneven { .. } | TimeBase::Unknown => Vec::new(),
     }
 }
 

@@ -250,7 +250,11 @@ fn what_is_no_road_is_refused_with_its_place() {
         ),
         (
             format!("{}@20km/h", own("rough.csv")),
-            &["rough.csv", "rougher than its sampling"],
+            &[
+                "rough.csv",
+                "rougher than its sampling",
+                "a tyre can roll; sample the profile finer",
+            ],
         ),
         (
             format!("{CRG}@20km/h"),

@@ -91,7 +91,7 @@ fn our_own_readers_read_what_is_written() {
                         (0..signal.samples.len()).map(|at| start + at as f64 * step).collect()
                     }
                     TimeBase::Times(times) => times.to_vec(),
-                    TimeBase::Unknown => Vec::new(),
+                    TimeBase::Uneven { .. } | TimeBase::Unknown => Vec::new(),
                 };
                 (
                     signal.name.clone(),

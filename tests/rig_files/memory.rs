@@ -3,6 +3,10 @@
 use std::fs::{self, File};
 use std::process::Command;
 
+use qcar_signals::content::Content;
+use qcar_signals::find::Wanted;
+use qcar_signals::read::channels;
+
 use crate::counting::memory_of;
 use crate::writers::{Channel, Group, mat5, mdf4, rpc, tdms};
 use crate::{channel, folder, history, open};
@@ -48,6 +52,23 @@ fn a_campaign_holds_the_channels_that_it_names() {
     of("long.tdms", tdms::file(&doubles), "", 0.25);
     of("long.mat", mat5::file(&doubles), "\nunit = \"m/s^2\"", 0.4);
     of("long.rsp", rpc::file(&shorts), "", 0.25);
+}
+
+/// Eight million bytes of times pass by like the samples: their first and their steps are kept.
+#[test]
+fn summaries_of_mdf_keep_no_times() {
+    let file = mdf4::file(&[group(1_000_000)]);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("long.mf4");
+    fs::write(&path, file).unwrap();
+    let held = memory_of(|| {
+        let content = Content::of_file(File::open(&path).unwrap()).unwrap();
+        let recording = channels(&content, &Wanted::Summaries).unwrap();
+        assert_eq!(recording.signals.len(), 16);
+        assert_eq!(recording.signals[0].time.rate().map(f64::round), Some(1000.0));
+    });
+    println!("{held} bytes");
+    assert!(held < 4_000_000, "{held} bytes");
 }
 
 /// A program that may take no more than 400 MB of addresses tells all sixteen channels of 520 MB, which it looks at in parts.

@@ -202,7 +202,7 @@ fn characters(element: &Element) -> Read<String> {
             let units: Vec<u16> = units.into_iter().map(|unit| unit as u16).collect();
             String::from_utf16_lossy(&units)
         }
-        _ => text(&bytes),
+        _ => text(&bytes).into(),
     })
 }
 

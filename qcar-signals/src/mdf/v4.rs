@@ -23,12 +23,12 @@ pub(super) fn read(bytes: Bytes, version: &str, wanted: &Wanted) -> Read<Recordi
     let mut recording = Recording::new(format!("MDF {version}"));
     let mut visited = Visited::default();
     let mut at = file.named(HEADER, b"##HD", "the header")?.link(0);
-    let mut what = "the first data group (`##DG`)";
+    let mut what = "the first data group";
     while at != 0 {
         let group = file.named(at, b"##DG", what)?;
         visited.first_time(at)?;
         add_data_group(&mut recording, &file, &group, &mut visited, wanted)?;
-        (at, what) = (group.link(0), "the next data group (`##DG`)");
+        (at, what) = (group.link(0), "the next data group");
     }
     Ok(recording)
 }

@@ -182,7 +182,7 @@ fn string(from: &Bytes, at: &mut u64) -> Read<String> {
     let length = u64::from(step_u32(from, at)?);
     let bytes = from.take(*at, length, "a text")?;
     *at += length;
-    Ok(text(&bytes))
+    Ok(text(&bytes).into())
 }
 
 /// Type 4, dimension 4, number of values 8, and of texts their bytes 8.

@@ -38,7 +38,7 @@ pub(super) fn time(base: &TimeBase, at: usize) -> f64 {
     match base {
         TimeBase::Even { start, step } => start + at as f64 * step,
         TimeBase::Times(times) => times[at],
-        TimeBase::Unknown => at as f64,
+        TimeBase::Uneven { .. } | TimeBase::Unknown => at as f64,
     }
 }
 
@@ -50,7 +50,7 @@ pub(super) fn rate(base: &TimeBase, count: usize, declared: Option<f64>) -> Opti
         TimeBase::Times(times) if times.len() > 1 => {
             Pace::of(times).map_or_else(|| usual_rate(times), |pace| pace.rate)
         }
-        TimeBase::Times(_) | TimeBase::Unknown => return declared,
+        TimeBase::Times(_) | TimeBase::Uneven { .. } | TimeBase::Unknown => return declared,
     };
     let declared = declared.filter(|declared| steps::agree(own, *declared, count.max(2) - 1));
     let whole = Some(own.round()).filter(|whole| (own - whole).abs() < WHOLE * whole);

@@ -185,7 +185,10 @@ impl<'a> Cells<'a> {
             "" => format!("a number, with {}", examples(kind)),
             unit => format!("a number in {unit}"),
         });
-        let remedy = "write a number, or open the file in Excel and save it to compute the formula";
+        let remedy = match &cell.value {
+            Value::Formula(_) => "open the file in Excel and save it, which stores the result, or write a number",
+            _ => "write a number",
+        };
         self.wrong(place(cell), found, expected, remedy);
         None
     }
