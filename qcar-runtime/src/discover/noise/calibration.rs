@@ -25,16 +25,14 @@ pub enum Form {
     Offset,
 }
 
-/// Number of shelves of a calibration curve: about one in each octave of the band of a rig. A shelf extends over two
-/// octaves, so those between two corners are represented too.
-pub const CORNERS: usize = 6;
+/// Number of shelves of a calibration curve. Each extends over a decade, a band over one to two.
+pub const CORNERS: usize = 3;
 
-/// A shelf with its prior. Data sheets give the frequency range of an accelerometer as the one in which its sensitivity
-/// keeps within 5 %. This is taken as two standard deviations of all six shelves together.
+/// A shelf with its prior: 1 % of gain for all shelves together, as in the data sheets below.
 const fn shelf(place: usize) -> Shape {
     Shape {
         form: Form::Shelf(place),
-        sigma: 0.01,
+        sigma: 0.006,
     }
 }
 
@@ -43,7 +41,7 @@ const fn shelf(place: usize) -> Shape {
 ///
 /// Thesis section 3.4 uses capacitive accelerometers. Their data sheets give 0.5 to 1 % of gain and the phase of a
 /// first-order filter at several hundred hertz.
-pub const SENSOR: [Shape; 10] = [
+pub const SENSOR: [Shape; 7] = [
     Shape {
         form: Form::Gain,
         sigma: 0.007,
@@ -51,9 +49,6 @@ pub const SENSOR: [Shape; 10] = [
     shelf(0),
     shelf(1),
     shelf(2),
-    shelf(3),
-    shelf(4),
-    shelf(5),
     Shape {
         form: Form::Phase,
         sigma: 0.003,
