@@ -176,7 +176,7 @@ fn a_campaign_that_cannot_be_driven_says_what_to_correct() {
     for (stderr, said) in [
         (road(&[[0.0, 0.0], [1.0, 0.0]]), "lengthen the road"),
         (road(&[[0.0, 0.0], [2.0, 0.0], [1.0, 0.0]]), "given.csv"),
-        (road(&rough), "sample it finer"),
+        (road(&rough), "sample the profile finer"),
         (refused("speed = 5.5555556", "speed = 0.0", &[]), "speed"),
         (
             refused("static_tire_def = 0.02361", "static_tire_def = 0.4", &[]),
