@@ -14,7 +14,7 @@ pub struct Shape {
 pub enum Form {
     /// Log gain, the same at all frequencies.
     Gain,
-    /// Log gain that rises by 1 about a corner frequency, with the phase that belongs to it. [`CORNERS`] of them are
+    /// Log gain that rises by 1 about a corner frequency, with the phase that belongs to it. Three of them are
     /// spread evenly over the band in log frequency, counted from 0.
     Shelf(usize),
     /// Phase, rad, the same at all frequencies.
