@@ -61,7 +61,7 @@ pub enum RoadError {
         "the road is rougher than its sampling: leaving out a sample changes it by {share:.2} of its own standard deviation, more than {limit}"
     )]
     Rough { share: f64, limit: f64 },
-    #[error("the road ends at x = {end} m, but the run reaches x = {needed} m; lengthen the road or shorten the run")]
+    #[error("the road ends at x = {end} m, but the run reaches x = {needed} m")]
     TooShort { end: f64, needed: f64 },
     #[error("{name} must be {expected}, found {value}")]
     Shape {

@@ -9,7 +9,7 @@ use crate::tyre::TyreError;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says it")]
 pub enum SimulateError {
-    #[error(transparent)]
+    #[error("{0}; {remedy}", remedy = .0.remedy())]
     Road(#[from] RoadError),
     #[error(transparent)]
     Tyre(#[from] TyreError),
