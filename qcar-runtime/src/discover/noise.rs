@@ -12,7 +12,7 @@ mod sensor_output;
 // Gaussian process discrepancy of the model.
 mod discrepancy;
 
-pub use calibration::{CALIBRATION_BOUND, Form, SENSOR, Shape};
+pub use calibration::{AccuracyClass, CALIBRATION_BOUND, Form, SENSOR, Shape};
 pub use discrepancy::{Discrepancy, GroupDiscrepancy};
 pub use nuisance::{InitialState, Nuisance, Suspect};
 pub use sensor_output::SensorOutput;

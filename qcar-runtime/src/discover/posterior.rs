@@ -19,6 +19,8 @@ mod refit;
 mod problem;
 // Laplace approximation: covariance and evidence.
 mod laplace;
+// Accuracy class of the calibration curves.
+mod accuracy;
 // Search for the maximum.
 mod search;
 // Residuals and Jacobian at a fit.

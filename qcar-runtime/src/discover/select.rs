@@ -172,7 +172,7 @@ fn lacks_nothing(base: &Set, evidence: &Evidence) -> bool {
 /// True if the held-out runs support only a part of the set and this part explains most of the excess residual.
 fn needs_no_further_effect(sets: &[Set], set: usize, evidence: &Evidence) -> bool {
     let answer = supported_part(sets, set, evidence);
-    let explained = explained_share(&sets[best_base(sets)].explanation, &sets[answer].explanation, evidence);
+    let explained = explained_share(&sets[best_base(sets)], &sets[answer], evidence);
     answer != set && explained >= GREATER_PART
 }
 
@@ -222,7 +222,7 @@ const BEAM: usize = 2;
 /// most of the excess residual; if they do not, the catalogue has no answer.
 fn next(sets: &[Set], evidence: &Evidence) -> Option<usize> {
     let best = best(sets);
-    let explained = || explained_share(&sets[best_base(sets)].explanation, &sets[best].explanation, evidence);
+    let explained = || explained_share(&sets[best_base(sets)], &sets[best], evidence);
     let effects = sets[best].names().len();
     let may_grow = effects < 2 || effects < MOST_EFFECTS && explained() >= GREATER_PART;
     let is_open = !sets[best].extended && may_grow;
@@ -259,14 +259,16 @@ fn unreduced(sets: &[Set]) -> Option<usize> {
 fn contradicts(law: &Set, found: &Set, evidence: &Evidence) -> bool {
     let named: Vec<&str> = found.named().map(|own| own.at.as_str()).collect();
     let agrees = law.named().all(|own| named.contains(&own.at.as_str()));
-    !agrees || explained_share(&found.explanation, &law.explanation, evidence) >= GREATER_PART
+    !agrees || explained_share(found, law, evidence) >= GREATER_PART
 }
 
 /// True if a learned law must be tried against the answer: the answer has several effects, leaves a significant part of
 /// the excess residual, or the base model has no excess residual.
 fn is_doubtful(found: &Set, base: &Set, evidence: &Evidence) -> bool {
-    let explained = explained_share(&base.explanation, &found.explanation, evidence);
-    found.names().len() > 1 || explained < evidence.numbers.certain() || excess(&base.explanation, evidence) <= 0.0
+    let explained = explained_share(base, found, evidence);
+    found.names().len() > 1
+        || explained < evidence.numbers.certain()
+        || excess(&base.with_sensors_of(found, evidence), evidence) <= 0.0
 }
 
 fn best(sets: &[Set]) -> usize {

@@ -14,8 +14,8 @@ pub struct Shape {
 pub enum Form {
     /// Log gain, the same at all frequencies.
     Gain,
-    /// Log gain that rises by 1 about a corner frequency, with the phase that belongs to it. Three of them are
-    /// spread evenly over the band in log frequency, counted from 0.
+    /// Log gain that rises by 1 about a corner frequency, with the phase that belongs to it. They are spread evenly
+    /// over the band in log frequency, counted from 0.
     Shelf(usize),
     /// Phase, rad, the same at all frequencies.
     Phase,
@@ -25,30 +25,48 @@ pub enum Form {
     Offset,
 }
 
-/// Number of shelves of a calibration curve. Each extends over a decade, a band over one to two.
-pub const CORNERS: usize = 3;
+/// Number of shelves of a calibration curve: about four in a decade, of which each takes one to rise.
+pub const SHELVES: usize = 6;
 
-/// A shelf with its prior: 1 % of gain for all shelves together, as in the data sheets below.
-const fn shelf(place: usize) -> Shape {
-    Shape {
-        form: Form::Shelf(place),
-        sigma: 0.006,
+/// Accuracy class of the calibration curves of a campaign's sensors. Class 0 is that of the data sheets below; each further
+/// class has √2 times the error.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct AccuracyClass(usize);
+
+/// Prior standard deviation of a shelf in class 0: 1 % of gain for all shelves together.
+const CALIBRATED: f64 = 0.004;
+
+impl AccuracyClass {
+    /// Number of classes: up to 16 % of gain for all shelves together, which is hardly a calibration any more.
+    const COUNT: usize = 9;
+
+    /// All classes, the most accurate first.
+    pub fn all() -> impl Iterator<Item = Self> {
+        (0..Self::COUNT).map(Self)
+    }
+
+    /// Prior standard deviation of a shelf.
+    pub fn shelf(self) -> f64 {
+        CALIBRATED * (self.0 as f64 / 2.0).exp2()
+    }
+
+    /// Negative log prior of the class, up to a constant: exponential in the error beyond the data sheets, whose mean is
+    /// the error of the data sheets.
+    pub fn cost(self) -> f64 {
+        self.shelf() / CALIBRATED - 1.0
     }
 }
 
-/// Priors of a sensor: 0.7 % of gain; a smooth calibration curve; 0.2° of phase; 50 µs of delay; an offset in time
+/// Priors of a sensor beside its calibration curve: 0.7 % of gain; 0.2° of phase; 50 µs of delay; an offset in time
 /// histories of a tenth of the reading.
 ///
 /// Thesis section 3.4 uses capacitive accelerometers. Their data sheets give 0.5 to 1 % of gain and the phase of a
 /// first-order filter at several hundred hertz.
-pub const SENSOR: [Shape; 7] = [
+pub const SENSOR: [Shape; 4] = [
     Shape {
         form: Form::Gain,
         sigma: 0.007,
     },
-    shelf(0),
-    shelf(1),
-    shelf(2),
     Shape {
         form: Form::Phase,
         sigma: 0.003,

@@ -8,7 +8,7 @@
 
 use nalgebra::Complex;
 
-use super::calibration::{Form, SENSOR};
+use super::calibration::{AccuracyClass, Form, SENSOR, SHELVES};
 use crate::campaign::{Axis, Role};
 use crate::discover::observe::{Evidence, Kind, Run, Series, Stimulus};
 use crate::mean::mean;
@@ -22,6 +22,12 @@ pub struct Nuisance {
     pub sensors: Vec<Point>,
     /// Lowest and highest frequency of the calibration curves, Hz.
     pub band: (f64, f64),
+    /// Number of shelves of each calibration curve; 0 without frequency responses, which alone show a curve.
+    pub shelves: usize,
+    /// Accuracy class of the calibration curves.
+    pub accuracy: AccuracyClass,
+    /// True if a fit holds the errors of [`SENSOR`] and the shelves at their start.
+    pub holds_sensors: bool,
     /// Suspected errors beyond the calibration.
     pub suspects: Vec<Suspect>,
     /// RMS reading of each sensor over all records; zero without any.
@@ -71,7 +77,11 @@ impl Nuisance {
                 .iter()
                 .flat_map(|s| s.at.iter().filter_map(|&at| s.kind.frequency(at)))
         };
+        let shows_curves = evidence.series.iter().any(|s| matches!(s.kind, Kind::Harmonic(_)));
         Self {
+            shelves: if shows_curves { SHELVES } else { 0 },
+            accuracy: AccuracyClass::default(),
+            holds_sensors: false,
             reads: sensors.iter().map(|sensor| reads(evidence, sensor)).collect(),
             without_offset: Vec::new(),
             sensors,
@@ -118,8 +128,8 @@ impl Nuisance {
         self
     }
 
-    /// Number of coefficients: [`SENSOR`] for each sensor in turn, one for each suspect, and one for each initial
-    /// state.
+    /// Number of coefficients: [`SENSOR`] and the shelves for each sensor in turn, one for each suspect, and one for each
+    /// initial state.
     pub fn len(&self) -> usize {
         self.of_sensors() + self.initial_states.len()
     }
@@ -131,7 +141,12 @@ impl Nuisance {
 
     /// Number of coefficients before those of the suspects.
     pub fn of_calibration(&self) -> usize {
-        self.sensors.len() * SENSOR.len()
+        self.sensors.len() * self.of_a_sensor()
+    }
+
+    /// Number of coefficients of each sensor.
+    pub(super) fn of_a_sensor(&self) -> usize {
+        SENSOR.len() + self.shelves
     }
 
     /// True if there are no sensors.
@@ -141,7 +156,9 @@ impl Nuisance {
 
     /// Prior standard deviation of each coefficient.
     pub fn sigmas(&self) -> Vec<f64> {
-        let priors = self.sensors.iter().flat_map(|_| SENSOR.map(|shape| shape.sigma));
+        let shelves = std::iter::repeat_n(self.accuracy.shelf(), self.shelves);
+        let of_a_sensor = SENSOR.iter().map(|shape| shape.sigma).chain(shelves);
+        let priors = self.sensors.iter().flat_map(|_| of_a_sensor.clone());
         priors
             .chain(self.suspects.iter().map(|suspect| suspect.sigma))
             .chain(self.initial_states.iter().map(|initial_state| initial_state.sigma))
@@ -151,8 +168,20 @@ impl Nuisance {
     /// Position of a sensor's coefficient; `None` if the sensor is unknown.
     pub(super) fn coefficient(&self, sensor: &Point, form: Form) -> Option<usize> {
         let place = self.sensors.iter().position(|s| s == sensor)?;
-        let shape = SENSOR.iter().position(|shape| shape.form == form)?;
-        Some(place * SENSOR.len() + shape)
+        let own = match form {
+            Form::Shelf(shelf) => (shelf < self.shelves).then_some(SENSOR.len() + shelf),
+            _ => SENSOR.iter().position(|shape| shape.form == form),
+        };
+        Some(place * self.of_a_sensor() + own?)
+    }
+
+    /// Positions of the coefficients of all calibration curves.
+    pub fn shelves(&self) -> impl Iterator<Item = usize> {
+        let of_sensor = move |place: usize| {
+            let first = place * self.of_a_sensor() + SENSOR.len();
+            first..first + self.shelves
+        };
+        (0..self.sensors.len()).flat_map(of_sensor)
     }
 
     /// Positions of the coefficients of a sensor's mean gain: that of its calibration and those of suspects.

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Complex;
 
-use super::calibration::{CORNERS, Form, SENSOR};
+use super::calibration::{Form, SENSOR};
 use super::nuisance::{Nuisance, rms};
 use crate::discover::observe::{Evidence, Kind, Series};
 use crate::transmissibility::Point;
@@ -64,7 +64,7 @@ impl Nuisance {
         let place = self.coefficient(&series.sensor, Form::Offset)?;
         let unit = match series.kind {
             Kind::Time if self.without_offset.iter().any(|(sensor, _)| *sensor == series.sensor) => return None,
-            Kind::Time => self.reads[place / SENSOR.len()],
+            Kind::Time => self.reads[place / self.of_a_sensor()],
             Kind::Travel => rms(series.value.iter()),
             _ => return None,
         };
@@ -112,10 +112,9 @@ impl Nuisance {
 
     /// Log derivatives by the errors of one sensor at `times` the frequency of the series.
     fn of_sensor(&self, sensor: &Point, series: &Series, sign: f64, times: f64) -> Vec<(usize, Vec<Complex<f64>>)> {
-        let factors = SENSOR
-            .iter()
-            .map(|shape| shape.form)
-            .filter(|&form| form != Form::Offset);
+        let curve = (0..self.shelves).map(Form::Shelf);
+        let factors = SENSOR.iter().map(|shape| shape.form).chain(curve);
+        let factors = factors.filter(|&form| form != Form::Offset);
         let own = factors.filter_map(|form| Some((self.coefficient(sensor, form)?, form)));
         let suspects = [Form::Gain, Form::Delay]
             .into_iter()
@@ -141,7 +140,7 @@ impl Nuisance {
     /// Corner frequency of a shelf, Hz: in the middle of its share of the band.
     fn corner(&self, place: usize) -> f64 {
         let (first, last) = self.band;
-        first * (last / first).powf((place as f64 + 0.5) / CORNERS as f64)
+        first * (last / first).powf((place as f64 + 0.5) / self.shelves as f64)
     }
 }
 

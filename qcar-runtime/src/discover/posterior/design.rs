@@ -70,6 +70,7 @@ impl Expected {
     fn by(refit: &Refit, model: &dyn Model, evidence: &Evidence, counted: &[usize]) -> Result<Self, PredictError> {
         let mut nuisance = Nuisance::of(evidence).with_initial_states(model.about(), evidence);
         nuisance.without_offset.clone_from(&refit.nuisance.without_offset);
+        nuisance.accuracy = refit.nuisance.accuracy;
         let mut posterior = Posterior::new(model, refit.values.clone(), &refit.free, evidence, nuisance);
         let known = refit.discrepancy.as_ref();
         posterior.discrepancy = known.map(|known| known.expected_of(evidence, Role::Fit));

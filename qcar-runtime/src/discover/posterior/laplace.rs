@@ -74,7 +74,7 @@ impl Posterior<'_> {
         let determinant = hessian
             .cholesky()
             .map_or(f64::NAN, |own| own.l_dirty().diagonal().map(f64::ln).sum());
-        -outcome.cost - discrepancy.cost() - determinant
+        -outcome.cost - discrepancy.cost() - self.nuisance.accuracy.cost() - determinant
     }
 }
 

@@ -16,6 +16,9 @@ const SIDE_BOUND: f64 = 3.0;
 /// the prior limits them, and this bound is only a safeguard.
 const ERROR_BOUND: f64 = 6.0;
 
+/// Largest change of a sensor error that is held, in prior standard deviations: the search needs an interval.
+const HELD: f64 = 1e-3;
+
 impl Posterior<'_> {
     /// Least-squares minimum from `start`.
     pub fn search(&mut self, start: &[f64], evaluations: usize) -> Result<Outcome, PredictError> {
@@ -25,8 +28,8 @@ impl Posterior<'_> {
             step: 1e-6,
             evaluations,
         };
-        let bounds = self.bounds();
         self.start = start.to_vec();
+        let bounds = self.bounds();
         let outcome = minimize(self, start, &bounds, &options);
         self.failure.take().map_or(Ok(outcome), Err)
     }
@@ -47,13 +50,21 @@ impl Posterior<'_> {
             .map(|f| f.lower)
             .chain(priors.iter().map(|bound| -bound));
         let upper = self.free.iter().map(|f| f.upper).chain(priors.iter().copied());
-        Bounds {
+        let mut bounds = Bounds {
             lower: lower.collect(),
             upper: upper.collect(),
+        };
+        if self.nuisance.holds_sensors {
+            for (k, sigma) in sensors[..self.nuisance.of_calibration()].iter().enumerate() {
+                let place = self.free.len() + k;
+                bounds.lower[place] = self.start[place] - HELD * sigma;
+                bounds.upper[place] = self.start[place] + HELD * sigma;
+            }
         }
+        bounds
     }
 
-    /// Alternates between searches and updates of the discrepancy.
+    /// Alternates between searches and updates of the discrepancy and of the accuracy class.
     pub fn fit(&mut self, mut place: Vec<f64>, rounds: usize, evaluations: usize) -> Result<Refit, PredictError> {
         let mut outcome = self.search(&place, evaluations)?;
         for round in 0..rounds {
@@ -61,6 +72,7 @@ impl Posterior<'_> {
                 outcome = self.search(&place, evaluations)?;
             }
             place.clone_from(&outcome.x);
+            self.estimate_accuracy(&outcome);
             self.estimate_discrepancy(&place);
         }
         let mut residual = DVector::zeros(self.residuals());

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::unknowns::Unknowns;
 use crate::campaign::Role;
 use crate::discover::candidate::{Added, Candidate, Change, Workshop};
-use crate::discover::noise::{Discrepancy, Form, InitialState, Nuisance};
+use crate::discover::noise::{AccuracyClass, Discrepancy, Form, InitialState, Nuisance};
 use crate::discover::observe::{Evidence, Free, PredictError};
 use crate::discover::posterior::{Explanation, Given, Misfit, Refit, Setting, Start, add_unsteady, fit};
 use crate::model::Model;
@@ -58,6 +58,8 @@ pub struct Place {
     pub named: BTreeMap<String, f64>,
     /// Log factors of the recorded side, by parameter.
     pub sides: BTreeMap<String, f64>,
+    /// Accuracy class of the calibration curves.
+    pub accuracy: AccuracyClass,
     /// Coefficients of the sensor errors.
     pub errors: Vec<f64>,
     /// Initial states of the records.
@@ -72,6 +74,7 @@ impl Place {
         Self {
             named: BTreeMap::new(),
             sides: BTreeMap::new(),
+            accuracy: AccuracyClass::default(),
             errors: Vec::new(),
             initial_states: Vec::new(),
             discrepancy: Discrepancy::of(evidence, Role::Fit),
@@ -232,6 +235,24 @@ impl<'a> Hypothesis<'a> {
         (nuisance, place.errors.iter().chain(initial_states).copied().collect())
     }
 
+    /// Fits from a place with the sensor errors of another fit.
+    ///
+    /// # Errors
+    /// Fails if the model cannot predict the evidence.
+    pub fn fit_with_sensors_of(
+        mut self,
+        other: &Refit,
+        mut from: Place,
+        evidence: &Evidence,
+        budget: (usize, usize),
+    ) -> Result<Refit, PredictError> {
+        self.nuisance.holds_sensors = true;
+        from.accuracy = other.nuisance.accuracy;
+        let sensors = self.nuisance.of_calibration();
+        from.errors[..sensors].copy_from_slice(&other.coefficients[..sensors]);
+        self.fit(&from, evidence, budget)
+    }
+
     /// Number of coefficients of its sensor errors.
     pub fn sensor_errors(&self) -> usize {
         self.nuisance.len()
@@ -296,7 +317,9 @@ impl<'a> Hypothesis<'a> {
             centre: &self.values(&BTreeMap::new())?,
             discrepancy: from.discrepancy.carried_to(evidence, Role::Fit),
         };
-        fit(self.model, start, &free, evidence, self.nuisance.clone(), budget)
+        let mut nuisance = self.nuisance.clone();
+        nuisance.accuracy = from.accuracy;
+        fit(self.model, start, &free, evidence, nuisance, budget)
     }
 
     /// Explanation of all runs by a fit, with the non-steady part of the sweeps.
@@ -327,6 +350,7 @@ impl<'a> Hypothesis<'a> {
         Place {
             named: named.collect(),
             sides: refit.free.iter().map(side).collect(),
+            accuracy: refit.nuisance.accuracy,
             errors: refit.coefficients[..refit.nuisance.of_sensors()].to_vec(),
             initial_states: refit.initial_states(),
             discrepancy: refit.discrepancy.clone().expect("a fit by evidence has a discrepancy"),

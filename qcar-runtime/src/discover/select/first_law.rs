@@ -29,7 +29,7 @@ impl FirstLaw {
     /// the data do not support the law, or if the law does not explain nearly all of it.
     pub fn lead(&mut self, sets: &[Set], set: usize, evidence: &Evidence, progress: Progress<'_>) -> f64 {
         let base = &sets[best_base(sets)];
-        let explained = |own: &Set| explained_share(&base.explanation, &own.explanation, evidence);
+        let explained = |own: &Set| explained_share(base, own, evidence);
         if sets[set].names().is_empty() || explained(&sets[best(sets)]) >= GREATER_PART {
             return 0.0;
         }

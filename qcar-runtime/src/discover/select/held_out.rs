@@ -14,11 +14,11 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
         let is_less = |other: &usize| sets[*other].names().len() < count && is_part(&sets[*other], &sets[best]);
         let is_answer = |other: &usize| is_less(other) && !sets[*other].has_magnitude_at_bound();
         let withdrawn = |&part: &usize| {
-            let explained = explained_share(&sets[part].explanation, &sets[best].explanation, evidence);
             // If the part leaves no more than noise, there is nothing to explain.
-            let is_enough = excess(&sets[part].explanation, evidence) <= 0.0;
-            let explains_little = is_enough || explained < evidence.numbers.explained();
-            let changes_little = !sets[part].names().is_empty() && explains_little;
+            let is_enough = || excess(&sets[part].with_sensors_of(&sets[best], evidence), evidence) <= 0.0;
+            let explained = || explained_share(&sets[part], &sets[best], evidence);
+            let explains_little = || is_enough() || explained() < evidence.numbers.explained();
+            let changes_little = !sets[part].names().is_empty() && explains_little();
             let fails = has_held_out && (changes_little || !predicts_better(&sets[best], &sets[part], evidence));
             fails || sets[best].adds_effect_at_bound(&sets[part])
         };

@@ -29,7 +29,7 @@ pub fn learn(base: &Set, first: Option<Set>, evidence: &Evidence, progress: Prog
             break;
         }
         let laws = more.assembly.effects().len() - base.assembly.effects().len();
-        let enough = explained_share(&base.explanation, &more.explanation, evidence) >= evidence.numbers.explained();
+        let enough = explained_share(base, &more, evidence) >= evidence.numbers.explained();
         if laws < MOST_LAWS && !enough {
             next = with_law(&more, evidence, progress);
         }
@@ -37,15 +37,14 @@ pub fn learn(base: &Set, first: Option<Set>, evidence: &Evidence, progress: Prog
     }
     // The held-out score neglects the parameter uncertainty of the law, which makes it too strict outside the range of
     // the fitted runs. If an effect is missing, a law that explains most of the excess residual is still useful.
-    let explains_most =
-        |best: &Set| explained_share(&base.explanation, &best.explanation, evidence) >= evidence.numbers.explained();
+    let explains_most = |best: &Set| explained_share(base, best, evidence) >= evidence.numbers.explained();
     best.filter(|best| is_supported(best, base, evidence) || is_missing(base, evidence) && explains_most(best))
 }
 
 /// True if the evidence supports the learned laws and they predict the held-out runs better than `base`.
 pub fn is_supported(learned: &Set, base: &Set, evidence: &Evidence) -> bool {
     let is_more_probable = learned.log_posterior() > base.log_posterior();
-    let explained = explained_share(&base.explanation, &learned.explanation, evidence) > 0.0;
+    let explained = explained_share(base, learned, evidence) > 0.0;
     is_more_probable && explained && predicts_better(learned, base, evidence)
 }
 
@@ -93,7 +92,7 @@ fn most_probable_law(
 
 /// The learned laws for the report.
 pub fn summary(base: &Set, learned: Set, evidence: &Evidence) -> Learned {
-    let explained = explained_share(&base.explanation, &learned.explanation, evidence);
+    let explained = explained_share(base, &learned, evidence);
     let laws = learned.assembly.effects().iter();
     let law = |own: &Placed| Finding {
         effect: own.effect.clone(),

@@ -1,14 +1,16 @@
 //! A set of effects with its fit: its probability, its names and its remaining residual.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, Mutex, OnceLock};
 
 use super::assembly::{Assembly, Placed};
 use super::fidelity::Fidelity;
+use super::finite_explanation;
 use crate::campaign::Role;
 use crate::discover::answer::{Finding, Rival};
+use crate::discover::noise::AccuracyClass;
 use crate::discover::numbers::{Numbers, ONE_SIDED};
 use crate::discover::observe::{Evidence, Series};
-use crate::discover::posterior::Explanation;
+use crate::discover::posterior::{Explanation, Refit};
 
 /// Rounds and evaluations of a fit to other evidence from a known optimum.
 const AGAIN: (usize, usize) = (2, 20);
@@ -28,6 +30,8 @@ pub struct Set {
     pub reduced: bool,
     /// Candidates that were dropped in the race that led to it.
     pub rivals: Vec<Rival>,
+    /// Its explanations with the sensors of other sets, by their log posteriors: see [`Self::with_sensors_of`].
+    pub with_sensors: Arc<Mutex<Vec<(f64, Explanation)>>>,
     /// Log likelihood of the held-out runs, computed on first use: see [`super::held_out`].
     pub score: OnceLock<f64>,
 }
@@ -43,6 +47,7 @@ impl Set {
             exchanged: false,
             reduced: false,
             rivals: Vec::new(),
+            with_sensors: Arc::default(),
             score: OnceLock::new(),
         }
     }
@@ -54,6 +59,37 @@ impl Set {
         let from = hypothesis.place(&self.explanation.refit);
         let refit = hypothesis.fit(&from, &Fidelity::of(evidence).fine, AGAIN).ok()?;
         Some(refit.log_evidence).filter(|own| own.is_finite())
+    }
+
+    /// Explanation by this set with the sensor errors of another set, if that one needs better sensors. Without an effect,
+    /// the sensors seem worse than they are, and then the effect would seem to explain too little.
+    pub fn with_sensors_of(&self, other: &Set, evidence: &Evidence) -> Explanation {
+        if self.accuracy() <= other.accuracy() {
+            return self.explanation.clone();
+        }
+        let refitted = || self.refitted_with_sensors(&other.explanation.refit, evidence);
+        let key = other.log_posterior();
+        let mut known = self.with_sensors.lock().expect("no thread panics with the lock");
+        let place = known.iter().position(|(of, _)| *of == key).unwrap_or_else(|| {
+            known.push((key, refitted().unwrap_or_else(|| self.explanation.clone())));
+            known.len() - 1
+        });
+        known[place].1.clone()
+    }
+
+    fn refitted_with_sensors(&self, other: &Refit, evidence: &Evidence) -> Option<Explanation> {
+        let own = &self.explanation.refit;
+        let from = self.assembly.hypothesis().place(own);
+        let steady = evidence.minus(&own.unsteady).with_step_limit();
+        let fine = &Fidelity::of(&steady).fine;
+        let hypothesis = self.assembly.hypothesis();
+        let refit = hypothesis.fit_with_sensors_of(other, from, fine, AGAIN).ok()?;
+        finite_explanation(&self.assembly.hypothesis(), refit, evidence)
+    }
+
+    /// Accuracy class of the sensors in the fit.
+    fn accuracy(&self) -> AccuracyClass {
+        self.explanation.refit.nuisance.accuracy
     }
 
     /// Log posterior probability, up to a constant of the data.
@@ -188,9 +224,10 @@ pub fn leaves_more_than_noise(set: &Set, evidence: &Evidence) -> bool {
     square.is_nan() || square > 1.0 + ONE_SIDED * scatter
 }
 
-/// Share of the excess residual of `before` that `after` explains, on the held-out runs.
-pub fn explained_share(before: &Explanation, after: &Explanation, evidence: &Evidence) -> f64 {
-    1.0 - excess(after, evidence) / excess(before, evidence).max(f64::MIN_POSITIVE)
+/// Share of the excess residual of `before` that `after` explains with the same sensors, on the held-out runs.
+pub fn explained_share(before: &Set, after: &Set, evidence: &Evidence) -> f64 {
+    let before = before.with_sensors_of(after, evidence);
+    1.0 - excess(&after.explanation, evidence) / excess(&before, evidence).max(f64::MIN_POSITIVE)
 }
 
 /// Excess residual: the mean square of the normalised residual above that of noise, which is 1; at least 0. It is that of

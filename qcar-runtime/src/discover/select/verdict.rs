@@ -6,16 +6,15 @@ use super::set::{Set, best_base, explained_share, is_missing, is_part};
 use crate::discover::answer::{Discovery, Finding, Probable, Verdict};
 use crate::discover::numbers::GREATER_PART;
 use crate::discover::observe::Evidence;
-use crate::discover::posterior::Explanation;
 
 /// The answer, and the position of the set that it describes. For a class, this is the most probable member.
 pub fn conclude(sets: &[Set], evidence: &Evidence) -> (Discovery, usize) {
     let answers = answers(sets, evidence);
     let base = best_base(sets);
-    let before = sets[base].explanation.clone();
+    let before = &sets[base];
     let credible = credible(sets, &answers, &evidence.numbers);
     // Effects that explain less than half of the excess residual are no answer, even if they are the most probable.
-    let explains = |set: usize| explained_share(&before, &sets[set].explanation, evidence) >= GREATER_PART;
+    let explains = |set: usize| explained_share(before, &sets[set], evidence) >= GREATER_PART;
     let members = if explains(credible[0]) { credible } else { vec![base] };
     let best = members[0];
     let after = sets[best].explanation.clone();
@@ -24,8 +23,8 @@ pub fn conclude(sets: &[Set], evidence: &Evidence) -> (Discovery, usize) {
         at: own.at.clone(),
         form: own.form.clone(),
         parameters: own.unknowns.parameters(&set.explanation),
-        evidence: set.explanation.refit.log_evidence - before.refit.log_evidence,
-        explained: explained_share(&before, &set.explanation, evidence),
+        evidence: set.explanation.refit.log_evidence - before.explanation.refit.log_evidence,
+        explained: explained_share(before, set, evidence),
         rivals: set.rivals.clone(),
     };
     let (findings, alternatives) = findings(&members.iter().map(|&place| &sets[place]).collect::<Vec<_>>(), &finding);
@@ -54,11 +53,11 @@ pub fn conclude(sets: &[Set], evidence: &Evidence) -> (Discovery, usize) {
     let discovery = Discovery {
         verdict,
         probability,
-        candidates: candidates(sets, &answers, &before, evidence),
+        candidates: candidates(sets, &answers, before, evidence),
         nuisances: [base, best].map(|place| nuisances(&sets[place])),
         findings,
         alternatives,
-        before,
+        before: before.with_sensors_of(&sets[best], evidence),
         after,
         detection_limits: Vec::new(),
         learned: None,
@@ -98,7 +97,7 @@ const CANDIDATES: usize = 3;
 
 /// The most probable effects, each described by the best of the smallest sets that contain it. Dismissed answers do not
 /// count towards the probability.
-fn candidates(sets: &[Set], answers: &[Answer], before: &Explanation, evidence: &Evidence) -> Vec<Probable> {
+fn candidates(sets: &[Set], answers: &[Answer], before: &Set, evidence: &Evidence) -> Vec<Probable> {
     let mut names: Vec<(&str, &str)> = sets.iter().flat_map(Set::names).collect();
     names.sort_unstable();
     names.dedup();
@@ -124,8 +123,8 @@ fn candidates(sets: &[Set], answers: &[Answer], before: &Explanation, evidence: 
             at: name.1.to_owned(),
             form,
             probability: share(answers.iter().filter(holds).map(|own| own.probability).sum(), all),
-            explained: explained_share(before, &best.explanation, evidence),
-            log_evidence: best.explanation.refit.log_evidence - before.refit.log_evidence,
+            explained: explained_share(before, best, evidence),
+            log_evidence: best.explanation.refit.log_evidence - before.explanation.refit.log_evidence,
         })
     });
     let mut probable: Vec<Probable> = probable.collect();

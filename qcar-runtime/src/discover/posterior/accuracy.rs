@@ -1,0 +1,77 @@
+//! Accuracy class of the sensors' calibration curves, estimated from the data.
+//!
+//! A campaign may be measured with worse sensors than those of the data sheets. One class for all of them tells how much
+//! worse. It is the class that makes the data most probable, with the shelves of the curves and all other unknowns
+//! integrated out (the evidence framework of MacKay, Neural Computation 4, 1992).
+
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+use super::problem::Posterior;
+use crate::discover::noise::AccuracyClass;
+use crate::least_squares::{Outcome, Problem};
+
+impl Posterior<'_> {
+    /// Sets the accuracy class to the most probable one at the optimum of a search.
+    pub fn estimate_accuracy(&mut self, outcome: &Outcome) {
+        if self.nuisance.holds_sensors {
+            return;
+        }
+        let Some(shelves) = Marginal::of(self, outcome) else {
+            return;
+        };
+        let cost = |class: AccuracyClass| shelves.cost(class.shelf()) + class.cost();
+        let most_probable = AccuracyClass::all().min_by(|a, b| cost(*a).total_cmp(&cost(*b)));
+        self.nuisance.accuracy = most_probable.unwrap_or_default();
+        for place in self.nuisance.shelves() {
+            self.sigmas[place] = self.nuisance.accuracy.shelf();
+        }
+    }
+}
+
+/// What the data tell about the shelves with all other unknowns integrated out, in independent directions.
+struct Marginal {
+    /// Information of the data on each direction.
+    information: DVector<f64>,
+    /// Slope of the log likelihood along each direction, at zero.
+    slope: DVector<f64>,
+}
+
+impl Marginal {
+    /// At the optimum of a search; `None` without shelves, or if another unknown is not determined.
+    fn of(posterior: &Posterior<'_>, outcome: &Outcome) -> Option<Self> {
+        let first = posterior.free.len();
+        let shelves: Vec<usize> = posterior.nuisance.shelves().map(|k| first + k).collect();
+        if shelves.is_empty() {
+            return None;
+        }
+        let is_other = |k: &usize| outcome.at_bound[*k] == 0 && !shelves.contains(k);
+        let others: Vec<usize> = (0..posterior.variables()).filter(is_other).collect();
+        let hessian = outcome.jacobian.tr_mul(&outcome.jacobian);
+        let block = |rows: &[usize], columns: &[usize]| -> DMatrix<f64> {
+            DMatrix::from_fn(rows.len(), columns.len(), |i, j| hessian[(rows[i], columns[j])])
+        };
+        let along = block(&others, &shelves);
+        let imitated = Cholesky::new(block(&others, &others))?.solve(&along);
+        let prior = posterior.nuisance.accuracy.shelf().powi(-2);
+        let data = block(&shelves, &shelves)
+            - along.tr_mul(&imitated)
+            - DMatrix::identity(shelves.len(), shelves.len()) * prior;
+        let coefficients = DVector::from_iterator(shelves.len(), shelves.iter().map(|&k| outcome.x[k]));
+        // At the optimum the slopes of likelihood and prior cancel.
+        let slope = &data * &coefficients + &coefficients * prior;
+        let directions = data.symmetric_eigen();
+        Some(Self {
+            information: directions.eigenvalues.map(|value| value.max(0.0)),
+            slope: directions.eigenvectors.tr_mul(&slope),
+        })
+    }
+
+    /// Negative log evidence for a standard deviation of the shelves, up to a constant.
+    fn cost(&self, sigma: f64) -> f64 {
+        let of = |(information, slope): (&f64, &f64)| {
+            let narrowed = 1.0 + information * sigma * sigma;
+            (narrowed.ln() - (slope * sigma).powi(2) / narrowed) / 2.0
+        };
+        self.information.iter().zip(&self.slope).map(of).sum()
+    }
+}
