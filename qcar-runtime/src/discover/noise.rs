@@ -14,5 +14,5 @@ mod discrepancy;
 
 pub use calibration::{AccuracyClass, CALIBRATION_BOUND, Form, SENSOR, Shape};
 pub use discrepancy::{Discrepancy, GroupDiscrepancy};
-pub use nuisance::{InitialState, Nuisance, Suspect};
+pub use nuisance::{InitialState, Known, Nuisance, Suspect};
 pub use sensor_output::SensorOutput;

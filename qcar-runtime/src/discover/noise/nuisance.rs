@@ -26,8 +26,8 @@ pub struct Nuisance {
     pub shelves: usize,
     /// Accuracy class of the calibration curves.
     pub accuracy: AccuracyClass,
-    /// True if a fit holds the errors of [`SENSOR`] and the shelves at their start.
-    pub holds_sensors: bool,
+    /// What a fit takes for known about the sensors.
+    pub known: Known,
     /// Suspected errors beyond the calibration.
     pub suspects: Vec<Suspect>,
     /// RMS reading of each sensor over all records; zero without any.
@@ -36,6 +36,17 @@ pub struct Nuisance {
     pub without_offset: Vec<(Point, String)>,
     /// Unknown initial states of the records.
     pub initial_states: Vec<InitialState>,
+}
+
+/// What a fit takes for known about the sensors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Known {
+    /// Nothing: it estimates the errors of the sensors and their accuracy class.
+    Nothing,
+    /// The accuracy class.
+    Class,
+    /// The accuracy class, and the errors of [`SENSOR`] and the shelves.
+    Errors,
 }
 
 /// Initial state of a record, as the deviation from the sensor reading at the first sample, or from rest without such a
@@ -81,7 +92,7 @@ impl Nuisance {
         Self {
             shelves: if shows_curves { SHELVES } else { 0 },
             accuracy: AccuracyClass::default(),
-            holds_sensors: false,
+            known: Known::Nothing,
             reads: sensors.iter().map(|sensor| reads(evidence, sensor)).collect(),
             without_offset: Vec::new(),
             sensors,

@@ -7,13 +7,13 @@
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::problem::Posterior;
-use crate::discover::noise::AccuracyClass;
+use crate::discover::noise::{AccuracyClass, Known};
 use crate::least_squares::{Outcome, Problem};
 
 impl Posterior<'_> {
     /// Sets the accuracy class to the most probable one at the optimum of a search.
     pub fn estimate_accuracy(&mut self, outcome: &Outcome) {
-        if self.nuisance.holds_sensors {
+        if self.nuisance.known != Known::Nothing {
             return;
         }
         let Some(shelves) = Marginal::of(self, outcome) else {

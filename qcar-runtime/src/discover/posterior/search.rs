@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::problem::Posterior;
 use super::refit::Refit;
-use crate::discover::noise::CALIBRATION_BOUND;
+use crate::discover::noise::{CALIBRATION_BOUND, Known};
 use crate::discover::observe::PredictError;
 use crate::least_squares::{Bounds, Options, Outcome, Problem, minimize};
 
@@ -54,7 +54,7 @@ impl Posterior<'_> {
             lower: lower.collect(),
             upper: upper.collect(),
         };
-        if self.nuisance.holds_sensors {
+        if self.nuisance.known == Known::Errors {
             for (k, sigma) in sensors[..self.nuisance.of_calibration()].iter().enumerate() {
                 let place = self.free.len() + k;
                 bounds.lower[place] = self.start[place] - HELD * sigma;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::unknowns::Unknowns;
 use crate::campaign::Role;
 use crate::discover::candidate::{Added, Candidate, Change, Workshop};
-use crate::discover::noise::{AccuracyClass, Discrepancy, Form, InitialState, Nuisance};
+use crate::discover::noise::{AccuracyClass, Discrepancy, Form, InitialState, Known, Nuisance};
 use crate::discover::observe::{Evidence, Free, PredictError};
 use crate::discover::posterior::{Explanation, Given, Misfit, Refit, Setting, Start, add_unsteady, fit};
 use crate::model::Model;
@@ -235,6 +235,21 @@ impl<'a> Hypothesis<'a> {
         (nuisance, place.errors.iter().chain(initial_states).copied().collect())
     }
 
+    /// Fits from a place with sensors as accurate as their data sheets.
+    ///
+    /// # Errors
+    /// Fails if the model cannot predict the evidence.
+    pub fn fit_with_calibrated_sensors(
+        mut self,
+        mut from: Place,
+        evidence: &Evidence,
+        budget: (usize, usize),
+    ) -> Result<Refit, PredictError> {
+        self.nuisance.known = Known::Class;
+        from.accuracy = AccuracyClass::default();
+        self.fit(&from, evidence, budget)
+    }
+
     /// Fits from a place with the sensor errors of another fit.
     ///
     /// # Errors
@@ -246,7 +261,7 @@ impl<'a> Hypothesis<'a> {
         evidence: &Evidence,
         budget: (usize, usize),
     ) -> Result<Refit, PredictError> {
-        self.nuisance.holds_sensors = true;
+        self.nuisance.known = Known::Errors;
         from.accuracy = other.nuisance.accuracy;
         let sensors = self.nuisance.of_calibration();
         from.errors[..sensors].copy_from_slice(&other.coefficients[..sensors]);

@@ -11,6 +11,7 @@ use super::set::{Set, is_missing};
 use super::{BASE, Progress, Update};
 use crate::discover::answer::Rival;
 use crate::discover::candidate::Candidate;
+use crate::discover::noise::AccuracyClass;
 use crate::discover::observe::Evidence;
 use crate::discover::posterior::Refit;
 
@@ -62,11 +63,21 @@ pub struct SearchStart {
 }
 
 impl SearchStart {
-    /// For a set that is nearly right.
+    /// For a set that is nearly right. A missing effect makes the sensors seem worse than they are, so a search starts
+    /// with sensors as accurate as their data sheets.
     pub fn of(set: &Set, steady: &Evidence) -> Self {
+        let fidelity = Fidelity::of(steady);
+        let own = &set.explanation.refit;
+        let calibrated = || {
+            let hypothesis = set.assembly.hypothesis();
+            let from = hypothesis.place(own);
+            hypothesis.fit_with_calibrated_sensors(from, &fidelity.coarse, BASE[0])
+        };
+        let is_calibrated = own.nuisance.accuracy == AccuracyClass::default();
+        let refit = if is_calibrated { None } else { calibrated().ok() };
         Self {
-            fidelity: Fidelity::of(steady),
-            refit: set.explanation.refit.clone(),
+            refit: refit.unwrap_or_else(|| own.clone()),
+            fidelity,
         }
     }
 

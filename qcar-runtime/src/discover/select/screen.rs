@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use super::assembly::{Assembly, Hypothesis, Place};
 use crate::campaign::Role;
 use crate::discover::candidate::{Added, Candidate, Change, ParameterRole};
-use crate::discover::noise::{AccuracyClass, Discrepancy, Form};
+use crate::discover::noise::{Discrepancy, Form};
 use crate::discover::observe::Evidence;
 use crate::discover::posterior::Refit;
 
@@ -54,10 +54,6 @@ const OTHERS: [f64; 2] = [-0.5, 0.5];
 /// Screens all candidates; the largest gain comes first. Leaves out those that cannot be predicted.
 pub fn screen(assembly: &Assembly, candidates: &[Candidate], refit: &Refit, evidence: &Evidence) -> Vec<Screened> {
     let here = assembly.hypothesis().place(refit);
-    // A missing effect makes the sensors seem worse than they are.
-    let mut refit = refit.clone();
-    refit.nuisance.accuracy = AccuracyClass::default();
-    let refit = &refit;
     let tangent = Tangent::new(refit, assembly, evidence);
     let without = tangent.gain_without_candidate();
     let all = candidates.par_iter().enumerate().filter_map(|(place, candidate)| {
