@@ -315,7 +315,7 @@ fn a_faint_effect_is_found() {
     let answer = discover(&campaign, None);
     for role in ["fit", "held_out"] {
         let before = answer["gap"][role]["before"].as_f64();
-        assert!(before.is_some_and(|gap| gap < 1.2), "{role}: {before:?}");
+        assert!(before.is_some_and(|gap| gap * gap < 2.0), "{role}: {before:?}");
     }
     assert_eq!(answer["verdict"], "found", "{answer}");
     assert_eq!(answer["effects"][0]["name"], "bushing_relaxation");

@@ -138,7 +138,7 @@ fn search(base: Set, evidence: &Evidence, progress: Progress<'_>) -> (Discovery,
     let (mut discovery, found) = conclude(&sets, evidence);
     if is_unexplained(&discovery, base, evidence) {
         let first = law.for_base(&sets, evidence, progress);
-        let learned = learn::learn(base, first, evidence, progress);
+        let learned = learn::learn(base, first, &sets[0], evidence, progress);
         let learned = learned.map(|learned| learn::summary(base, learned, evidence));
         discovery.take(learned, &evidence.numbers);
     } else if discovery.verdict != Verdict::None && is_doubtful(&sets[found], base, evidence) {

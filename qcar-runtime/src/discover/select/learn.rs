@@ -9,7 +9,7 @@ use super::held_out::predicts_better;
 use super::race::{Finalist, race};
 use super::screen::Screened;
 use super::set::{Set, explained_share, is_missing};
-use super::{Progress, Update, finite_explanation};
+use super::{Progress, Update, finite_explanation, without};
 use crate::discover::answer::{Finding, Learned};
 use crate::discover::candidate::Candidate;
 use crate::discover::observe::Evidence;
@@ -18,9 +18,9 @@ use crate::discover::observe::Evidence;
 const MOST_LAWS: usize = 2;
 
 /// The set with the laws that the evidence supports beside `base`, starting with the `first`; `None` if it supports
-/// none. The laws must predict the held-out runs better than `base`, or explain most of the excess residual there if
+/// none. `plain` is the base model without nuisance effects. The laws must predict the held-out runs better than `base`, or explain most of the excess residual there if
 /// `base` is far off.
-pub fn learn(base: &Set, first: Option<Set>, evidence: &Evidence, progress: Progress<'_>) -> Option<Set> {
+pub fn learn(base: &Set, first: Option<Set>, plain: &Set, evidence: &Evidence, progress: Progress<'_>) -> Option<Set> {
     let mut best: Option<Set> = None;
     let mut next = first;
     while let Some(more) = next.take() {
@@ -35,10 +35,27 @@ pub fn learn(base: &Set, first: Option<Set>, evidence: &Evidence, progress: Prog
         }
         best = Some(more);
     }
+    let best = best.map(|laws| without_needless_law(laws, base, plain, evidence));
     // The held-out score neglects the parameter uncertainty of the law, which makes it too strict outside the range of
     // the fitted runs. If an effect is missing, a law that explains most of the excess residual is still useful.
     let explains_most = |best: &Set| explained_share(base, best, evidence) >= evidence.numbers.explained();
     best.filter(|best| is_supported(best, base, evidence) || is_missing(base, evidence) && explains_most(best))
+}
+
+/// The set without a law that a later one has made unnecessary; the set itself if there is none.
+fn without_needless_law(laws: Set, base: &Set, plain: &Set, evidence: &Evidence) -> Set {
+    let learned = base.assembly.effects().len()..laws.assembly.effects().len();
+    if learned.len() < 2 {
+        return laws;
+    }
+    let less = learned
+        .into_par_iter()
+        .filter_map(|place| without(place, &laws, plain, evidence));
+    let best = less.max_by(|a, b| a.log_posterior().total_cmp(&b.log_posterior()));
+    match best {
+        Some(less) if less.log_posterior() > laws.log_posterior() => less,
+        _ => laws,
+    }
 }
 
 /// True if the evidence supports the learned laws and they predict the held-out runs better than `base`.
