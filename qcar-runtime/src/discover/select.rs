@@ -94,13 +94,16 @@ pub fn discover(
         again.is_some_and(|log_evidence| is_more_probable(log_evidence, &found, evidence))
     });
     let Some(quieter) = quieter else {
+        evidence.notices.extend(found.note_on_sensors());
         return Ok(discovery);
     };
     *evidence = quieter.seen_by(found.assembly.model(), &found.explanation.refit.values)?;
     progress(Update::Step(
         "repeating the search without the noise of the recorded inputs",
     ));
-    Ok(search(fitted(evidence)?, evidence, progress).0)
+    let (discovery, found) = search(fitted(evidence)?, evidence, progress);
+    evidence.notices.extend(found.note_on_sensors());
+    Ok(discovery)
 }
 
 /// True if other data of the same responses make them more probable by the odds of a certain answer.

@@ -50,6 +50,11 @@ impl AccuracyClass {
         CALIBRATED * (self.0 as f64 / 2.0).exp2()
     }
 
+    /// Standard deviation of the gain for all shelves together, as a share.
+    pub fn gain(self) -> f64 {
+        self.shelf() * (SHELVES as f64).sqrt()
+    }
+
     /// Negative log prior of the class, up to a constant: exponential in the error beyond the data sheets, whose mean is
     /// the error of the data sheets.
     pub fn cost(self) -> f64 {

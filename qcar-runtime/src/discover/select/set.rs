@@ -87,6 +87,20 @@ impl Set {
         finite_explanation(&self.assembly.hypothesis(), refit, evidence)
     }
 
+    /// A notice if the sensors are less accurate than their data sheets.
+    pub fn note_on_sensors(&self) -> Option<String> {
+        let class = self.accuracy();
+        let percent = |class: AccuracyClass| format!("{:.1} %", 100.0 * class.gain());
+        let calibrated = AccuracyClass::default();
+        (class > calibrated).then(|| {
+            format!(
+                "the gains of the sensors seem to change by {} over the band, where {} is usual; the answer allows for that",
+                percent(class),
+                percent(calibrated)
+            )
+        })
+    }
+
     /// Accuracy class of the sensors in the fit.
     fn accuracy(&self) -> AccuracyClass {
         self.explanation.refit.nuisance.accuracy
