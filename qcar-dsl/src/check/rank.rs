@@ -1,4 +1,4 @@
-//! Ranks and null spaces of small matrices, by elimination with full pivoting.
+//! Ranks and null spaces of small dense matrices, by elimination with full pivoting.
 
 /// Pivots below this fraction of the largest entry count as zero.
 const NEGLIGIBLE: f64 = 1e-9;
@@ -14,91 +14,69 @@ pub fn null_space(rows: Vec<Vec<f64>>, columns: usize) -> Vec<Vec<f64>> {
 }
 
 /// The same for a matrix with small entries, relative to a given scale.
-pub fn null_space_of_scale(rows: Vec<Vec<f64>>, columns: usize, largest: f64) -> Vec<Vec<f64>> {
-    let mut rows: Vec<Row> = rows.iter().map(|row| nonzeros(row)).collect();
-    let mut is_free = vec![true; columns];
+pub fn null_space_of_scale(mut rows: Vec<Vec<f64>>, columns: usize, largest: f64) -> Vec<Vec<f64>> {
+    let mut free: Vec<usize> = (0..columns).collect();
     let mut bound = Vec::new();
-    let mut foremost: Vec<Option<Entry>> = rows.iter().map(largest_of).collect();
-    while let Some((row, (column, size))) = pivot(&foremost, bound.len()) {
-        if size <= NEGLIGIBLE * largest {
+    let mut foremost: Vec<Option<usize>> = rows.iter().map(|row| largest_of(row, &free)).collect();
+    while let Some((row, column)) = pivot(&rows, &foremost, bound.len()) {
+        if rows[row][column].abs() <= NEGLIGIBLE * largest {
             break;
         }
         let at = bound.len();
         rows.swap(at, row);
         foremost.swap(at, row);
-        is_free[column] = false;
+        free.retain(|&other| other != column);
         bound.push(column);
-        let (above, below) = rows.split_at_mut(at + 1);
-        for (row, foremost) in below.iter_mut().zip(&mut foremost[at + 1..]) {
-            if eliminate(row, &above[at], column) {
-                *foremost = largest_of(row);
-            }
+        for changed in eliminate(&mut rows, at, column) {
+            foremost[changed] = largest_of(&rows[changed], &free);
         }
     }
-    let free = (0..columns).filter(|&column| is_free[column]);
-    free.map(|column| null_vector(&rows, &bound, column, columns)).collect()
+    free.iter()
+        .map(|&column| null_vector(&rows, &bound, column, columns))
+        .collect()
 }
 
-/// A column and what stands there.
-type Entry = (usize, f64);
-
-/// The nonzeros of a row, in the order of the columns.
-type Row = Vec<Entry>;
-
-fn nonzeros(row: &[f64]) -> Row {
-    let entries = row.iter().copied().enumerate();
-    entries.filter(|(_, value)| *value != 0.0).collect()
+/// The column in which a row is largest.
+fn largest_of(row: &[f64], columns: &[usize]) -> Option<usize> {
+    columns.iter().copied().max_by_key(|&column| size(row[column]))
 }
 
-fn value(row: &Row, column: usize) -> f64 {
-    let place = row.binary_search_by_key(&column, |entry| entry.0);
-    place.map_or(0.0, |place| row[place].1)
+/// The largest entry of the rows from a position on; the column of the largest entry of each row is known.
+fn pivot(rows: &[Vec<f64>], foremost: &[Option<usize>], from: usize) -> Option<(usize, usize)> {
+    let left = (from..rows.len()).filter_map(|row| Some((row, foremost[row]?)));
+    left.max_by_key(|&(row, column)| size(rows[row][column]))
 }
 
-/// The column in which a row is largest, and the size there.
-fn largest_of(row: &Row) -> Option<Entry> {
-    let sizes = row.iter().map(|&(column, value)| (column, value.abs()));
-    sizes.max_by(|a, b| a.1.total_cmp(&b.1))
+/// In the order of magnitudes; NaN is larger than all numbers.
+fn size(entry: f64) -> u64 {
+    entry.abs().to_bits()
 }
 
-/// The row from a position on with the largest entry; that of each row is known.
-fn pivot(foremost: &[Option<Entry>], from: usize) -> Option<(usize, Entry)> {
-    let left = (from..foremost.len()).filter_map(|row| Some((row, foremost[row]?)));
-    left.max_by(|(_, a), (_, b)| a.1.total_cmp(&b.1))
-}
-
-/// Eliminates a column of a row by a pivot row. Returns whether the row had it.
-fn eliminate(row: &mut Row, pivot: &Row, column: usize) -> bool {
-    let factor = value(row, column) / value(pivot, column);
-    if factor == 0.0 {
-        return false;
-    }
-    let mut sum = Vec::with_capacity(row.len() + pivot.len());
-    let (mut own, mut other) = (row.iter().copied().peekable(), pivot.iter().copied().peekable());
-    while let Some(next) = [own.peek(), other.peek()]
-        .into_iter()
-        .flatten()
-        .map(|entry| entry.0)
-        .min()
-    {
-        let [own, other] = [&mut own, &mut other].map(|side| side.next_if(|entry| entry.0 == next));
-        let value = own.map_or(0.0, |own| own.1) - other.map_or(0.0, |other| factor * other.1);
-        if next != column && value != 0.0 {
-            sum.push((next, value));
+/// Eliminates a column in the rows below its pivot; returns the changed rows.
+fn eliminate(rows: &mut [Vec<f64>], at: usize, column: usize) -> Vec<usize> {
+    let (above, below) = rows.split_at_mut(at + 1);
+    let pivot_row = &above[at];
+    let mut changed = Vec::new();
+    for (index, row) in below.iter_mut().enumerate() {
+        let factor = row[column] / pivot_row[column];
+        if factor != 0.0 {
+            row.iter_mut()
+                .zip(pivot_row)
+                .for_each(|(entry, own)| *entry -= factor * own);
+            changed.push(at + 1 + index);
         }
     }
-    *row = sum;
-    true
+    changed
 }
 
 /// The null vector with the entry 1 at a free column, by back substitution.
-fn null_vector(rows: &[Row], bound: &[usize], column: usize, columns: usize) -> Vec<f64> {
+fn null_vector(rows: &[Vec<f64>], bound: &[usize], column: usize, columns: usize) -> Vec<f64> {
     let mut vector = vec![0.0; columns];
     vector[column] = 1.0;
-    for (row, &own) in rows.iter().zip(bound).rev() {
-        // Its own entry is still zero, and it has none in the columns that were bound before.
-        let known: f64 = row.iter().map(|&(other, value)| value * vector[other]).sum();
-        vector[own] = -known / value(row, own);
+    for (at, &own) in bound.iter().enumerate().rev() {
+        let others = bound[at + 1..].iter().chain([&column]);
+        let known: f64 = others.map(|&other| rows[at][other] * vector[other]).sum();
+        vector[own] = -known / rows[at][own];
     }
     vector
 }
