@@ -106,6 +106,8 @@ pub fn pairs(first: &[Mode], second: &[Mode]) -> Vec<(usize, usize)> {
 struct IndexedShape {
     shape: Vec<(usize, Complex<f64>)>,
     by_point: Vec<Option<Complex<f64>>>,
+    /// The sum of the squares of all amplitudes.
+    square: f64,
 }
 
 impl IndexedShape {
@@ -123,7 +125,12 @@ impl IndexedShape {
             by_point[point] = Some(part.amplitude);
             shape.push((point, part.amplitude));
         }
-        IndexedShape { shape, by_point }
+        let square = shape.iter().map(|(_, amplitude)| amplitude.norm_sqr()).sum();
+        IndexedShape {
+            shape,
+            by_point,
+            square,
+        }
     }
 
     fn at(&self, point: usize) -> Option<Complex<f64>> {
@@ -141,7 +148,7 @@ fn likeness(first: &IndexedShape, second: &IndexedShape) -> f64 {
     };
     let product = |&(point, amplitude): &(usize, Complex<f64>)| Some(amplitude.conj() * second.at(point)?);
     let product: Complex<f64> = first.shape.iter().filter_map(product).sum();
-    let whole = (square(first, first) * square(second, second)).sqrt();
+    let whole = (first.square * second.square).sqrt();
     let common = (square(first, second) * square(second, first)).sqrt();
     if common > 0.0 {
         product.norm_sqr() / (common * whole)

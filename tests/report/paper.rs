@@ -42,7 +42,10 @@ fn no_word_on_paper_is_too_small_to_read() {
         for word in boxes.lines().filter(|line| line.contains("<word ")) {
             let end = |name: &str| number(word, name);
             let [width, height] = [end("xMax") - end("xMin"), end("yMax") - end("yMin")];
-            let letters = word.split('>').nth(1).map_or(0, |text| text.chars().take_while(|c| *c != '<').count());
+            let letters = word
+                .split('>')
+                .nth(1)
+                .map_or(0, |text| text.chars().take_while(|c| *c != '<').count());
             assert!(letters < 4 || width.min(height) > 6.0, "{word}");
         }
     }
