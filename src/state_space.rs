@@ -88,8 +88,16 @@ pub struct OutputName {
     pub unit: String,
 }
 
-/// Evaluates a model, along one axis or along all.
+/// Evaluates a model with its derivatives, along one axis or along all.
 pub fn state_space(model: &dyn Model, values: &Values, axis: Option<&str>) -> StateSpace {
+    StateSpace {
+        sensitivities: sensitivities(model, values, &Kept::new(model.about(), axis)),
+        ..without_sensitivities(model, values, axis)
+    }
+}
+
+/// The same without derivatives, which are dense and so outgrow a long model.
+pub fn without_sensitivities(model: &dyn Model, values: &Values, axis: Option<&str>) -> StateSpace {
     let about = model.about();
     let p = values.as_slice();
     let keep = Kept::new(about, axis);
@@ -108,7 +116,7 @@ pub fn state_space(model: &dyn Model, values: &Values, axis: Option<&str>) -> St
         parameters: leaders.map(|k| about.parameters[k].name.to_string()).collect(),
         values: names.zip(p.iter().copied()).collect(),
         matrices: matrices(model, p, &keep),
-        sensitivities: sensitivities(model, values, &keep),
+        sensitivities: BTreeMap::new(),
     }
 }
 

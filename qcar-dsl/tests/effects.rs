@@ -1,6 +1,7 @@
 //! Every effect that is shipped reads, prints as itself, and compiles at each of its places in each model.
 
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 use std::thread;
 
 use qcar_dsl::check::Checked;
@@ -83,21 +84,63 @@ fn every_effect_prints_as_the_same_tree() {
     }
 }
 
-#[test]
-fn every_effect_compiles_wherever_it_applies() {
-    // One thread for each model: on one alone this test outlasts all others together.
-    thread::scope(|scope| {
-        for file in files("axles") {
-            scope.spawn(move || compiles_with_every_effect(&checked(&file)));
-        }
-    });
+/// A model with an effect in one of its forms.
+struct Candidate {
+    effect: String,
+    form: Option<String>,
+    place: String,
+    warnings: String,
 }
 
-fn compiles_with_every_effect(model: &Checked) {
-    for effect in effects().into_iter().chain(in_folder("laws")) {
-        for patched in effect.candidates(model, &|_| None) {
-            let warnings = patched.model.warnings();
-            assert!(warnings.diagnostics.is_empty(), "{}\n{warnings}", patched.model.name);
+fn candidates(effects: Vec<Patch>, model: &Checked) -> Vec<Candidate> {
+    let candidate = |patched: Patched| Candidate {
+        effect: patched.effect,
+        form: patched.form,
+        place: patched.place,
+        warnings: if patched.model.warnings().diagnostics.is_empty() {
+            String::new()
+        } else {
+            patched.model.warnings().to_string()
+        },
+    };
+    let all = effects
+        .into_iter()
+        .flat_map(|effect| effect.candidates(model, &|_| None));
+    all.map(candidate).collect()
+}
+
+/// Those of each shipped model by its name: several tests look at them, and they take seconds.
+static OF_EFFECTS: LazyLock<Vec<(String, Vec<Candidate>)>> = LazyLock::new(|| {
+    let of = |file: PathBuf| {
+        let model = checked(&file);
+        (model.name.clone(), candidates(effects(), &model))
+    };
+    // One thread for each model: on one alone this outlasts all tests together.
+    thread::scope(|scope| {
+        let running: Vec<_> = files("axles")
+            .into_iter()
+            .map(|file| scope.spawn(move || of(file)))
+            .collect();
+        running.into_iter().map(|own| own.join().unwrap()).collect()
+    })
+});
+
+#[test]
+fn every_effect_compiles_wherever_it_applies() {
+    let of_laws = files("axles").into_iter().map(|file| {
+        let model = checked(&file);
+        (model.name.clone(), candidates(in_folder("laws"), &model))
+    });
+    let of_laws: Vec<_> = of_laws.collect();
+    for (model, candidates) in OF_EFFECTS.iter().chain(&of_laws) {
+        for own in candidates {
+            assert!(
+                own.warnings.is_empty(),
+                "{} at {} of {model}\n{}",
+                own.effect,
+                own.place,
+                own.warnings
+            );
         }
     }
 }
@@ -203,14 +246,13 @@ fn a_frequency_keeps_its_unit() {
 #[test]
 fn the_catalogue_applies_where_it_should() {
     let mut table = String::new();
-    for file in files("axles") {
-        let model = checked(&file);
-        table += &format!("{}\n", model.name);
-        for effect in effects() {
-            let places = effect.places(&model);
-            if !places.is_empty() {
-                table += &format!("    {}: {}\n", effect.effect().name.text, places.join(", "));
-            }
+    for (model, candidates) in OF_EFFECTS.iter() {
+        table += &format!("{model}\n");
+        for of_effect in candidates.chunk_by(|one, next| one.effect == next.effect) {
+            // An effect has a candidate at a place for each of its forms.
+            let mut places: Vec<&str> = of_effect.iter().map(|own| own.place.as_str()).collect();
+            places.dedup();
+            table += &format!("    {}: {}\n", of_effect[0].effect, places.join(", "));
         }
     }
     insta::assert_snapshot!(table);
@@ -316,24 +358,24 @@ fn renamed(model: &Checked) -> Checked {
     check(Source { name, text }, &load).unwrap_or_else(|report| panic!("{report}"))
 }
 
-/// Effects, forms and how often each applies.
-fn applied(model: &Checked) -> Vec<(String, Option<String>)> {
-    let all = effects();
-    let candidates = all.iter().flat_map(|effect| effect.candidates(model, &|_| None));
-    candidates.map(|patched| (patched.effect, patched.form)).collect()
+/// Effects and their forms.
+fn forms(candidates: &[Candidate]) -> Vec<(&str, Option<&str>)> {
+    let forms = candidates.iter();
+    forms.map(|own| (own.effect.as_str(), own.form.as_deref())).collect()
 }
 
 #[test]
 fn effects_go_by_what_the_parts_do_not_by_what_they_are_called() {
     for name in ["axle_a", "axle_c", "axle_d", "quarter_car"] {
-        let model = model(name);
-        let mut found = applied(&renamed(&model));
-        for own in applied(&model) {
+        let renamed = candidates(effects(), &renamed(&model(name)));
+        let mut found = forms(&renamed);
+        let (_, usual) = OF_EFFECTS.iter().find(|(model, _)| model == name).unwrap();
+        for own in forms(usual) {
             let place = found.iter().position(|other| *other == own);
             found.remove(place.unwrap_or_else(|| panic!("{name} loses {own:?}")));
         }
         // What an effect adds is refused only where the model has something of that name.
-        found.retain(|(effect, _)| effect != "suspended_mass" && effect != "subframe");
+        found.retain(|(effect, _)| *effect != "suspended_mass" && *effect != "subframe");
         assert!(found.is_empty(), "{name}: {found:?}");
     }
 }

@@ -3,10 +3,15 @@
 //! The equations of motion are linearised at rest, `dx = A x`; a mode is a pair of complex eigenvalues of A with its
 //! eigenvector. See Ewins, "Modal Testing", 2nd ed., section 2.5, for modes of nonproportional damping.
 
+// Eigenvectors by inverse iteration.
+mod eigenvectors;
+
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DMatrix};
+
+pub(crate) use eigenvectors::Eigenvectors;
 
 use crate::matrices::{at_rest, dense};
 use crate::model::{Matrix, Model, StateKind};
@@ -43,8 +48,9 @@ const STILL: f64 = 1e-6;
 /// The modes of a model, lowest frequency first. Eigenvalues without oscillation are left out.
 pub fn modes(model: &(impl Model + ?Sized), values: &Values) -> Vec<Mode> {
     let a = dynamics(model, values.as_slice());
+    let eigenvectors = Eigenvectors::of(&a);
     let roots = vibrations(&a).into_iter();
-    roots.map(|root| mode(model, &a, root)).collect()
+    roots.map(|root| mode(model, &eigenvectors, root)).collect()
 }
 
 /// Frequency (Hz) and damping ratio of each mode, without its shape.
@@ -100,6 +106,8 @@ pub fn pairs(first: &[Mode], second: &[Mode]) -> Vec<(usize, usize)> {
 struct IndexedShape {
     shape: Vec<(usize, Complex<f64>)>,
     by_point: Vec<Option<Complex<f64>>>,
+    /// The sum of the squares of all amplitudes.
+    square: f64,
 }
 
 impl IndexedShape {
@@ -117,7 +125,12 @@ impl IndexedShape {
             by_point[point] = Some(part.amplitude);
             shape.push((point, part.amplitude));
         }
-        IndexedShape { shape, by_point }
+        let square = shape.iter().map(|(_, amplitude)| amplitude.norm_sqr()).sum();
+        IndexedShape {
+            shape,
+            by_point,
+            square,
+        }
     }
 
     fn at(&self, point: usize) -> Option<Complex<f64>> {
@@ -135,7 +148,7 @@ fn likeness(first: &IndexedShape, second: &IndexedShape) -> f64 {
     };
     let product = |&(point, amplitude): &(usize, Complex<f64>)| Some(amplitude.conj() * second.at(point)?);
     let product: Complex<f64> = first.shape.iter().filter_map(product).sum();
-    let whole = (square(first, first) * square(second, second)).sqrt();
+    let whole = (first.square * second.square).sqrt();
     let common = (square(first, second) * square(second, first)).sqrt();
     if common > 0.0 {
         product.norm_sqr() / (common * whole)
@@ -149,8 +162,8 @@ pub(crate) fn dynamics(model: &(impl Model + ?Sized), p: &[f64]) -> DMatrix<f64>
     dense(model.about(), Matrix::A, &at_rest(model, p))
 }
 
-fn mode(model: &(impl Model + ?Sized), a: &DMatrix<f64>, root: Complex<f64>) -> Mode {
-    let vector = eigenvector(a, root);
+fn mode(model: &(impl Model + ?Sized), eigenvectors: &Eigenvectors, root: Complex<f64>) -> Mode {
+    let vector = eigenvectors.nearest(root);
     let states = model.about().states.iter().zip(vector.iter());
     let positions = states.filter(|(state, _)| state.kind == StateKind::Position);
     let positions: Vec<_> = positions.collect();
@@ -167,19 +180,4 @@ fn mode(model: &(impl Model + ?Sized), a: &DMatrix<f64>, root: Complex<f64>) -> 
         damping: damping(root),
         shape: shape.collect(),
     }
-}
-
-/// The eigenvector of the smallest eigenvalue of `A - λ`, by inverse iteration with a shift.
-pub(crate) fn eigenvector(a: &DMatrix<f64>, root: Complex<f64>) -> DVector<Complex<f64>> {
-    const SHIFT: f64 = 1e-9;
-    const STEPS: usize = 3;
-    let count = a.nrows();
-    let shifted = a.map(Complex::from) - DMatrix::from_diagonal_element(count, count, root * (1.0 + SHIFT));
-    let factors = shifted.lu();
-    let mut vector = DVector::from_fn(count, |row, _| Complex::new(1.0, row as f64 / count as f64));
-    for _ in 0..STEPS {
-        let next = factors.solve(&vector).unwrap_or_else(|| vector.clone());
-        vector = next.unscale(next.norm());
-    }
-    vector
 }

@@ -250,7 +250,6 @@ impl File {
 
     fn recording(mut self) -> Read<Recording> {
         let mut recording = Recording::new("TDMS");
-        let mut times: HashMap<String, TimeBase> = HashMap::new();
         let mut channels = Vec::new();
         for object in &mut self.objects {
             let Some((group, name)) = channel_of(&object.path) else {
@@ -261,24 +260,7 @@ impl File {
                 Err(why) => recording.pass_over(name, object.place.clone(), why),
             }
         }
-        let untimed = |group: &str| {
-            channels
-                .iter()
-                .any(|(own, _, object, _)| own == group && object.step().is_none())
-        };
-        for (group, name, object, samples) in channels
-            .iter()
-            .filter(|(group, name, ..)| is_time(name) && untimed(group))
-        {
-            if let Some(factor) = seconds(&object.unit()) {
-                let mut own = samples.clone();
-                in_seconds(&mut own, factor);
-                let base = TimeBase::from_times(own).map_err(|(at, found)| {
-                    Fault::damaged(object.place.clone(), format!("{found} in sample {}", at + 1), "times").of(name)
-                })?;
-                times.insert(group.clone(), base);
-            }
-        }
+        let times = times_of_groups(&channels)?;
         for (group, name, object, samples) in channels {
             let of_group = times.get(&group).filter(|_| object.step().is_none());
             if of_group.is_some() && is_time(&name) {
@@ -305,6 +287,30 @@ impl File {
         }
         Ok(recording)
     }
+}
+
+/// A channel: group, name, object and samples.
+type Channel<'a> = (String, String, &'a Object, Vec<f64>);
+
+/// The times that a channel of a group states, where another channel of it has no step of its own.
+fn times_of_groups(channels: &[Channel<'_>]) -> Read<HashMap<String, TimeBase>> {
+    let is_untimed = |group: &str| {
+        let mut of_group = channels.iter().filter(|(own, ..)| own == group);
+        of_group.any(|(_, _, object, _)| object.step().is_none())
+    };
+    let mut times = HashMap::new();
+    for (group, name, object, samples) in channels {
+        let Some(factor) = seconds(&object.unit()).filter(|_| is_time(name) && is_untimed(group)) else {
+            continue;
+        };
+        let mut own = samples.clone();
+        in_seconds(&mut own, factor);
+        let base = TimeBase::from_times(own).map_err(|(at, found)| {
+            Fault::damaged(object.place.clone(), format!("{found} in sample {}", at + 1), "times").of(name)
+        })?;
+        times.insert(group.clone(), base);
+    }
+    Ok(times)
 }
 
 impl Object {

@@ -58,7 +58,7 @@ pub struct Arguments {
     /// Start from this model, by name or path, instead of the campaign's
     #[arg(long, add = ArgValueCompleter::new(completion::models))]
     model: Option<String>,
-    /// Write the patched model file, parameters.toml, discovery.json and gap.svg into this folder; stopped by Ctrl-C, what is known by then into `unfinished` in it
+    /// Write the patched model file, parameters.toml, discovery.json and gap.svg into this folder; after Ctrl-C, write what is known so far into its subfolder `unfinished`
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
     /// Multiply assumptions of the search, to see their influence on the answer

@@ -17,7 +17,7 @@ use crate::files::put;
 use crate::json;
 use crate::parameters;
 use crate::roads;
-use crate::state_space::{StateSpace, state_space};
+use crate::state_space::{StateSpace, state_space, without_sensitivities};
 
 // The tyre and road of an FMU whose tyre rolls.
 mod on_tyre;
@@ -220,7 +220,7 @@ fn files(
         }
         Kind::Matlab => (vec![matlab::program(subject, stem)?], String::new()),
         Kind::Mat | Kind::Mat73 => {
-            let matrices = matrices(model, values)?;
+            let matrices = finite(model, without_sensitivities(&**model, values, None))?;
             let file = match kind {
                 Kind::Mat => matlab::data(subject, &matrices),
                 _ => matlab::data_in_hdf5(subject, &matrices),
@@ -240,14 +240,13 @@ fn files(
             vec![javascript::file(subject, model.about(), values, stem)],
             String::new(),
         ),
-        Kind::Json => text(json::line(&matrices(model, values)?)),
-        Kind::Csv => text(entries(&matrices(model, values)?)),
+        Kind::Json => text(json::line(&finite(model, state_space(&**model, values, None))?)),
+        Kind::Csv => text(entries(&finite(model, without_sensitivities(&**model, values, None))?)),
         Kind::Latex => text(show(subject.compiled, Stage::Latex)),
     })
 }
 
-fn matrices(model: &Loaded, values: &Values) -> Result<StateSpace, Failure> {
-    let matrices = state_space(&**model, values, None);
+fn finite(model: &Loaded, matrices: StateSpace) -> Result<StateSpace, Failure> {
     parameters::require_finite(&model.about().name, matrices.matrices.values().flatten().flatten())?;
     Ok(matrices)
 }

@@ -51,11 +51,11 @@ pub(crate) mod nonlinear;
 ///
 /// A linear model is fitted to transmissibilities, with all levels in one cost. A nonlinear model is fitted to all runs
 /// that it predicts, including cleats, K&C curves and dynamometer tables: to the first three harmonics of sweeps by
-/// harmonic balance, and to records sample by sample, each with its own uncertainty. A linear model is too with
-/// `--all-runs`, and if time histories but no sweeps are to be fitted; `--channels` or `--bootstrap` then chooses
-/// transmissibilities. Runs with the role `fit` are fitted; `held_out` runs are only compared with. Estimated are the
-/// parameters with `fit = true` in the campaign, and those that only the model gives, with a default and a range,
-/// unless they are `known`. A parameter that no fitted channel depends on takes its value from the K&C curve that
+/// harmonic balance, and to records sample by sample, each with its own uncertainty. `--all-runs` fits a linear model in
+/// this way. Without that flag a linear model is fitted so only if the campaign has time histories but no sweeps to fit,
+/// and neither `--channels` nor `--bootstrap` asks for transmissibilities. Runs with the role `fit` are fitted; `held_out`
+/// runs are only compared. The fit estimates the parameters with `fit = true` in the campaign. It also estimates those
+/// that the campaign does not name, if the model gives a default and a range and does not call them `known`. A parameter that no fitted channel depends on takes its value from the K&C curve that
 /// determines it, if the campaign has one. The exit status is 1 if the search does not end at a minimum, or if every
 /// parameter ends at a bound of its range.
 #[derive(Args)]

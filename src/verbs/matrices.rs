@@ -8,7 +8,7 @@ use crate::catalogue;
 use crate::failure::{Failure, flag};
 use crate::json;
 use crate::parameters;
-use crate::state_space::{Rows, StateSpace, state_space};
+use crate::state_space::{Rows, StateSpace, state_space, without_sensitivities};
 use crate::table::{Table, number};
 use crate::terminal::prose;
 use crate::verbs::{Format, ModelArguments};
@@ -36,7 +36,11 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     check_axis(about, arguments.axis.as_deref())?;
     let values = parameters::resolve(about, arguments.model.params.as_deref(), &arguments.model.set)?;
     model.check_inertias(values.as_slice())?;
-    let matrices = state_space(&*model, &values, arguments.axis.as_deref());
+    let evaluate = match arguments.format {
+        Format::Text => without_sensitivities,
+        Format::Json => state_space,
+    };
+    let matrices = evaluate(&*model, &values, arguments.axis.as_deref());
     parameters::require_finite(&about.name, matrices.matrices.values().flatten().flatten())?;
     Ok(match arguments.format {
         Format::Text => prose(&text(&matrices)),

@@ -26,7 +26,7 @@ use crate::units;
 use crate::verbs::Format;
 use crate::verbs::fit::{self, Choices, nonlinear};
 
-/// Print which further sensor, run or level would tell most about the parameters of a campaign
+/// Print which further sensor, run or level would give the most information about the parameters of a campaign
 ///
 /// The model is fitted. Each candidate measurement is then judged by the rise of the log determinant of the Fisher
 /// information about the parameters (D-optimality), and the standard errors to expect are printed. Candidates are: a

@@ -55,7 +55,7 @@ pub struct Arguments {
     /// Take start values, vehicle data and cleat runs from this campaign
     #[arg(long, value_name = "DIR")]
     campaign: Option<PathBuf>,
-    /// Parameter values above those: a TOML file with [parameters] and perhaps [vehicle], or the fit.json of a fit
+    /// Parameter values that take precedence over those of the campaign or model: a TOML file with [parameters] and perhaps [vehicle], or the fit.json of a fit
     #[arg(long, value_name = "FILE")]
     params: Option<PathBuf>,
     /// A single value, which takes precedence over that of the files; may be repeated
@@ -76,7 +76,7 @@ pub struct Arguments {
     /// Tolerance of a part relative to its value, such as k_tire=5%; may be repeated
     #[arg(long, value_name = "NAME=PERCENT")]
     tolerance: Vec<Tolerance>,
-    /// Parts are at a temperature from so many to so many kelvin above that for which the values hold, such as -30..50
+    /// Lowest and highest temperature of the parts, in kelvin above the temperature for which the values hold, such as -30..50
     #[arg(long, value_name = "LOW..HIGH", requires = "per_kelvin", allow_hyphen_values = true)]
     temperature: Option<Temperatures>,
     /// Relative change of a parameter per kelvin, such as c_wheel_z=-0.3%; may be repeated

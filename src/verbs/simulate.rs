@@ -59,8 +59,8 @@ pub struct Arguments {
     /// of its own, or a measured profile such as road.crg#v=0.5@50km/h; each perhaps with a duration, `:20s`
     #[arg(long, value_name = "ROAD@SPEED")]
     road: Vec<roads::RequestedRoad>,
-    /// Write the time histories into this folder, a file for each run; of a sweep or time history measured beside simulated, and an
-    /// SVG; of a road power spectral densities as CSV and SVG
+    /// Write the time histories into this folder, a file for each run. For a sweep or time history it has the measured and the simulated
+    /// signals, with an SVG; for a road there are power spectral densities too, as CSV and SVG
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
     /// Format of the files

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use flate2::read::GzDecoder;
 
-use crate::common::{copy, qcar};
+use crate::common::{self, copy, qcar};
 
 /// Runs in the repository with `FILE` standing for a file of this content.
 fn refused(content: &str, arguments: &[&str], said: &[&str]) {
@@ -18,21 +18,7 @@ fn refused(content: &str, arguments: &[&str], said: &[&str]) {
         .iter()
         .map(|argument| if *argument == "FILE" { file } else { argument })
         .collect();
-    let ran = qcar(&arguments);
-    assert_eq!(
-        (ran.status, ran.stdout.as_str()),
-        (2, ""),
-        "{arguments:?}\n{}",
-        ran.stderr
-    );
-    assert!(!ran.stderr.contains("panicked"), "{}", ran.stderr);
-    for fragment in said {
-        assert!(
-            ran.stderr.contains(fragment),
-            "expected `{fragment}` in\n{}",
-            ran.stderr
-        );
-    }
+    common::refused(&qcar(&arguments), said);
 }
 
 fn params(content: &str, said: &[&str]) {

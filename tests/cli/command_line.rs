@@ -6,36 +6,14 @@ use std::io::Read;
 use std::process::{Command, Stdio};
 
 use crate::common::{qcar, succeeds};
+use crate::help::verbs;
 use serde_json::Value;
-
-const VERBS: [&str; 20] = [
-    "new",
-    "import",
-    "check",
-    "show",
-    "matrices",
-    "export",
-    "frf",
-    "fit",
-    "plan",
-    "kc",
-    "simulate",
-    "sensitivity",
-    "target",
-    "score",
-    "effects",
-    "patch",
-    "diff",
-    "completions",
-    "study",
-    "compare",
-];
 
 #[test]
 fn every_verb_explains_itself_with_an_example() {
     insta::assert_snapshot!("help", succeeds(&["--help"]));
-    for verb in VERBS {
-        let help = succeeds(&[verb, "--help"]);
+    for verb in verbs() {
+        let help = succeeds(&[&verb, "--help"]);
         assert!(help.contains("Example"), "{help}");
         insta::assert_snapshot!(format!("help_{verb}"), help);
     }

@@ -14,6 +14,19 @@ pub struct Ran {
     pub stderr: String,
 }
 
+/// Asserts that a command refused its input with these words, and without a panic.
+pub fn refused(ran: &Ran, said: &[&str]) {
+    assert_eq!((ran.status, ran.stdout.as_str()), (2, ""), "{}", ran.stderr);
+    assert!(!ran.stderr.contains("panicked"), "{}", ran.stderr);
+    for fragment in said {
+        assert!(
+            ran.stderr.contains(fragment),
+            "expected `{fragment}` in\n{}",
+            ran.stderr
+        );
+    }
+}
+
 /// Runs `qcar` with these arguments in the root of the repository.
 pub fn qcar(arguments: &[&str]) -> Ran {
     qcar_in(Path::new(env!("CARGO_MANIFEST_DIR")), arguments)

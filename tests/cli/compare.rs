@@ -6,7 +6,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::common::{copy, qcar, qcar_in, succeeds};
+use crate::common::{self, copy, qcar, qcar_in, succeeds};
 
 const AXLE: &str = "models/campaigns/axle_a_rig";
 const STUDY: &str = "models/campaigns/axle_c_study";
@@ -301,20 +301,7 @@ fn what_cannot_be_compared_is_refused_with_a_remedy() {
     fs::write(&json, "{\"name\": 1}").unwrap();
     let (note, json) = (note.to_str().unwrap(), json.to_str().unwrap());
     let refused = |arguments: &[&str], said: &[&str]| {
-        let ran = qcar(&[&["compare"], arguments].concat());
-        assert_eq!(
-            (ran.status, ran.stdout.as_str()),
-            (2, ""),
-            "{arguments:?}\n{}",
-            ran.stderr
-        );
-        for fragment in said {
-            assert!(
-                ran.stderr.contains(fragment),
-                "expected `{fragment}` in\n{}",
-                ran.stderr
-            );
-        }
+        common::refused(&qcar(&[&["compare"], arguments].concat()), said);
     };
     refused(&["axle_a", AXLE], &["is a model", "is a campaign", "two of one kind"]);
     refused(&["axle_q", "axle_a"], &["`axle_q`, which does not exist", "`A`"]);

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use serde_json::Value;
 
-use crate::common::{Ran, qcar_in, repository, run_line, succeeds};
+use crate::common::{qcar_in, refused, repository, run_line, succeeds};
 use crate::document::{blocks, commands};
 
 const AXLE: &str =
@@ -150,18 +150,6 @@ fn a_run_that_was_killed_goes_on() {
         "{}",
         again.stdout
     );
-}
-
-fn refused(ran: &Ran, said: &[&str]) {
-    assert_eq!((ran.status, ran.stdout.as_str()), (2, ""), "{}", ran.stderr);
-    assert!(!ran.stderr.contains("panicked"), "{}", ran.stderr);
-    for fragment in said {
-        assert!(
-            ran.stderr.contains(fragment),
-            "expected `{fragment}` in\n{}",
-            ran.stderr
-        );
-    }
 }
 
 #[test]

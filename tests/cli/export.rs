@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use crate::common::{Ran, qcar, repository, run_line, succeeds};
+use crate::common::{Ran, qcar, refused, repository, run_line, succeeds};
 use crate::document::{blocks, commands};
 
 /// Every kind, with the end of its file.
@@ -20,18 +20,6 @@ const KINDS: [(&str, &str); 8] = [
 
 fn export(model: &str, kind: &str, out: &Path, more: &[&str]) -> Ran {
     qcar(&[&["export", model, "--as", kind, "--out", out.to_str().unwrap()], more].concat())
-}
-
-fn refused(ran: &Ran, fragments: &[&str]) {
-    assert_eq!((ran.status, ran.stdout.as_str()), (2, ""), "{}", ran.stderr);
-    assert!(!ran.stderr.contains("panicked"), "{}", ran.stderr);
-    for fragment in fragments {
-        assert!(
-            ran.stderr.contains(fragment),
-            "expected `{fragment}` in\n{}",
-            ran.stderr
-        );
-    }
 }
 
 #[test]

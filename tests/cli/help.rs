@@ -6,7 +6,7 @@ use crate::common::{Ran, repository, run_line, succeeds};
 use crate::studied::{self, Studied};
 
 /// What `qcar --help` lists.
-fn verbs() -> Vec<String> {
+pub fn verbs() -> Vec<String> {
     let help = succeeds(&["--help"]);
     let listed = help.split("Commands:\n").nth(1).unwrap().split("\n\n").next().unwrap();
     let names = listed.lines().filter_map(|line| line.split_whitespace().next());

@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::common::{qcar, repository, run_line, succeeds};
+use crate::common::{self, qcar, repository, run_line, succeeds};
 use crate::document::{blocks, commands};
 use crate::studied::{self, Studied};
 
@@ -240,15 +240,7 @@ fn refused(old: &str, new: &str, said: &[&str]) {
     assert!(text.contains(old), "{old}");
     let file = folder.path().join("targets.toml");
     fs::write(&file, text.replace(old, new)).unwrap();
-    let ran = run_line(folder.path(), "target targets.toml");
-    assert_eq!((ran.status, ran.stdout.as_str()), (2, ""), "{}", ran.stderr);
-    for fragment in said {
-        assert!(
-            ran.stderr.contains(fragment),
-            "expected `{fragment}` in\n{}",
-            ran.stderr
-        );
-    }
+    common::refused(&run_line(folder.path(), "target targets.toml"), said);
 }
 
 #[test]

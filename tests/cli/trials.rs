@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::common::{Ran, copy, run_line};
+use crate::common::{copy, refused, run_line};
 
 const TRIALS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/trials");
 
@@ -29,19 +29,6 @@ fn json(folder: &Path, line: &str) -> Value {
     let ran = run_line(folder, &format!("{line} --format json"));
     assert_eq!(ran.status, 0, "{line}\n{}", ran.stderr);
     serde_json::from_str(&ran.stdout).unwrap()
-}
-
-/// Refused with these words, and without a panic.
-fn refused(ran: &Ran, said: &[&str]) {
-    assert_eq!((ran.status, ran.stdout.as_str()), (2, ""), "{}", ran.stderr);
-    assert!(!ran.stderr.contains("panicked"), "{}", ran.stderr);
-    for fragment in said {
-        assert!(
-            ran.stderr.contains(fragment),
-            "expected `{fragment}` in\n{}",
-            ran.stderr
-        );
-    }
 }
 
 #[test]

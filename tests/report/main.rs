@@ -99,6 +99,7 @@ fn legends_have_the_dashes_of_their_curves() {
     let found = look(&browser, &page(&ONE_MISSING), 1280, "light");
     for (role, dash) in [
         ("start", "2 4"),
+        ("inwards", "2 3"),
         ("after", ""),
         ("locked", "10 3 2 3"),
         ("vertical", "2 3"),

@@ -1,6 +1,7 @@
 //! The report on A4: every run, every column, and nothing that answers to a pointer.
 
 use super::browser::{printed, printer_or_word};
+use super::studied::Studied;
 use super::{ONE_MISSING, page};
 
 #[test]
@@ -32,14 +33,34 @@ fn paper_has_every_column_and_every_run() {
     }
 }
 
+/// Of each word with its height, or the width of one that is turned, none is below that of a text of six points.
+#[test]
+fn no_word_on_paper_is_too_small_to_read() {
+    let Some(browser) = printer_or_word() else { return };
+    for report in [page(&ONE_MISSING), page(&Studied::sensitivities())] {
+        let boxes = printed(&browser, &report, &["-bbox"]);
+        for word in boxes.lines().filter(|line| line.contains("<word ")) {
+            let end = |name: &str| number(word, name);
+            let [width, height] = [end("xMax") - end("xMin"), end("yMax") - end("yMin")];
+            let letters = word
+                .split('>')
+                .nth(1)
+                .map_or(0, |text| text.chars().take_while(|c| *c != '<').count());
+            assert!(letters < 4 || width.min(height) > 6.0, "{word}");
+        }
+    }
+}
+
+/// The value of an attribute of a line.
+fn number(line: &str, name: &str) -> f64 {
+    let value = line.split(&format!("{name}=\"")).nth(1).unwrap();
+    value.split('"').next().unwrap().parse().unwrap()
+}
+
 #[test]
 fn paper_is_a4_and_cuts_no_word() {
     let Some(browser) = printer_or_word() else { return };
     let boxes = printed(&browser, &page(&ONE_MISSING), &["-bbox"]);
-    let number = |line: &str, name: &str| -> f64 {
-        let value = line.split(&format!("{name}=\"")).nth(1).unwrap();
-        value.split('"').next().unwrap().parse().unwrap()
-    };
     let pages = boxes.lines().filter(|line| line.contains("<page "));
     for page in pages {
         let size = (number(page, "width").round(), number(page, "height").round());

@@ -17,52 +17,64 @@ pub fn null_space(rows: Vec<Vec<f64>>, columns: usize) -> Vec<Vec<f64>> {
 pub fn null_space_of_scale(mut rows: Vec<Vec<f64>>, columns: usize, largest: f64) -> Vec<Vec<f64>> {
     let mut free: Vec<usize> = (0..columns).collect();
     let mut bound = Vec::new();
-    let mut foremost: Vec<Option<usize>> = rows.iter().map(|row| largest_of(row, &free)).collect();
-    while let Some((row, column)) = pivot(&rows, &foremost, bound.len()) {
-        if rows[row][column].abs() <= NEGLIGIBLE * largest {
+    let mut foremost: Vec<Option<usize>> = rows.iter().map(|row| largest_of(row)).collect();
+    while let Some((row, place)) = pivot(&rows, &foremost, bound.len()) {
+        if rows[row][place].abs() <= NEGLIGIBLE * largest {
             break;
         }
         let at = bound.len();
         rows.swap(at, row);
         foremost.swap(at, row);
-        free.retain(|&other| other != column);
-        bound.push(column);
-        for changed in eliminate(&mut rows, at, column) {
-            foremost[changed] = largest_of(&rows[changed], &free);
+        let (above, below) = rows.split_at_mut(at + 1);
+        for (row, foremost) in below.iter_mut().zip(&mut foremost[at + 1..]) {
+            let changed = eliminate(row, &above[at], place);
+            match foremost {
+                Some(own) if !changed && *own > place => *own -= 1,
+                Some(own) if !changed && *own < place => {}
+                _ => *foremost = largest_of(row),
+            }
         }
+        above[at] = spread(&above[at], &free, columns);
+        bound.push(free.remove(place));
     }
     free.iter()
         .map(|&column| null_vector(&rows, &bound, column, columns))
         .collect()
 }
 
-/// The column in which a row is largest.
-fn largest_of(row: &[f64], columns: &[usize]) -> Option<usize> {
-    let columns = columns.iter().copied();
-    columns.max_by(|&a, &b| row[a].abs().total_cmp(&row[b].abs()))
+/// The place at which a row is largest.
+fn largest_of(row: &[f64]) -> Option<usize> {
+    let sizes = row.iter().map(|entry| size(*entry)).enumerate();
+    sizes.max_by_key(|(_, size)| *size).map(|(place, _)| place)
 }
 
-/// The largest entry of the rows from a position on; the column of the largest entry of each row is known.
+/// The largest entry of the rows from a position on; the place of the largest entry of each row is known.
 fn pivot(rows: &[Vec<f64>], foremost: &[Option<usize>], from: usize) -> Option<(usize, usize)> {
     let left = (from..rows.len()).filter_map(|row| Some((row, foremost[row]?)));
-    left.max_by(|a, b| rows[a.0][a.1].abs().total_cmp(&rows[b.0][b.1].abs()))
+    left.max_by_key(|&(row, place)| size(rows[row][place]))
 }
 
-/// Eliminates a column in the rows below its pivot; returns the changed rows.
-fn eliminate(rows: &mut [Vec<f64>], at: usize, column: usize) -> Vec<usize> {
-    let (above, below) = rows.split_at_mut(at + 1);
-    let pivot_row = &above[at];
-    let mut changed = Vec::new();
-    for (index, row) in below.iter_mut().enumerate() {
-        let factor = row[column] / pivot_row[column];
-        if factor != 0.0 {
-            row.iter_mut()
-                .zip(pivot_row)
-                .for_each(|(entry, own)| *entry -= factor * own);
-            changed.push(at + 1 + index);
-        }
+/// In the order of magnitudes; NaN is larger than all numbers.
+fn size(entry: f64) -> u64 {
+    entry.abs().to_bits()
+}
+
+/// Eliminates a place of a row by a pivot row, and removes it. Returns whether that changed the others.
+fn eliminate(row: &mut Vec<f64>, pivot: &[f64], place: usize) -> bool {
+    let factor = row[place] / pivot[place];
+    if factor != 0.0 {
+        let entries = row.iter_mut().zip(pivot);
+        entries.for_each(|(entry, own)| *entry -= factor * own);
     }
-    changed
+    row.remove(place);
+    factor != 0.0
+}
+
+/// A row of all columns, given that of those that are free.
+fn spread(row: &[f64], free: &[usize], columns: usize) -> Vec<f64> {
+    let mut whole = vec![0.0; columns];
+    free.iter().zip(row).for_each(|(&column, entry)| whole[column] = *entry);
+    whole
 }
 
 /// The null vector with the entry 1 at a free column, by back substitution.

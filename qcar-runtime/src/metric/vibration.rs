@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use crate::matrices::sensitivities_at_rest;
 use crate::model::{Matrix, Model};
-use crate::modes::{dynamics, eigenvector, vibrations};
+use crate::modes::{Eigenvectors, dynamics, vibrations};
 
 /// A mode: its `[frequency in Hz, damping ratio]`, and the derivatives of both along each direction.
 pub(super) struct Vibration {
@@ -19,20 +19,15 @@ pub(super) struct Vibration {
 pub(super) fn of(model: &dyn Model, p: &[f64], directions: &[Vec<f64>]) -> Vec<Vibration> {
     let a = dynamics(model, p);
     let moved: Vec<DMatrix<f64>> = directions.iter().map(|direction| change(model, p, direction)).collect();
-    let transposed = a.transpose();
-    let vibration = |root: Complex<f64>| {
-        let slopes = if moved.is_empty() {
-            Vec::new()
-        } else {
-            let (right, left) = (eigenvector(&a, root), eigenvector(&transposed, root));
+    let sides = (!moved.is_empty()).then(|| [&a, &a.transpose()].map(Eigenvectors::of));
+    let vibration = |root: Complex<f64>| Vibration {
+        value: [root.norm() / TAU, -root.re / root.norm()],
+        slopes: sides.as_ref().map_or_else(Vec::new, |sides| {
+            let [right, left] = sides.each_ref().map(|side| side.nearest(root));
             let scale = left.dot(&right);
             let by = |da: &DMatrix<f64>| slope(root, left.dot(&(da.map(Complex::from) * &right)) / scale);
             moved.iter().map(by).collect()
-        };
-        Vibration {
-            value: [root.norm() / TAU, -root.re / root.norm()],
-            slopes,
-        }
+        }),
     };
     vibrations(&a).into_iter().map(vibration).collect()
 }

@@ -46,33 +46,19 @@ pub(crate) fn highest<M: Model + ?Sized>(
         }
         between(&response, values, numerator, denominator).ok()
     };
-    let mut frequency = spaced(BAND, LINES);
-    let mut value = between(survey, values, numerator, denominator).ok()?.value;
-    let mut band = about_largest(&frequency, &value)?;
-    for _ in 0..REFINEMENTS {
-        frequency = spaced(band, REFINED_LINES);
-        value = ratio(&frequency, false)?.value;
-        band = about_largest(&frequency, &value)?;
-    }
-    let at = (band[0] * band[1]).sqrt();
+    let surveyed = between(survey, values, numerator, denominator).ok()?.value;
+    let at = position(&surveyed, |frequency| Some(ratio(frequency, false)?.value))?;
     // Large enough for an accurate second derivative of the magnitude, and small enough that this is the one at the
     // peak.
     let step = 3e-5 * at;
     let near = |at: f64, jacobian: bool| ratio(&[at - step, at, at + step], jacobian);
-    let shape = |near: &Ratio| {
-        let [left, middle, right] = [0, 1, 2].map(|line| near.value[line].norm());
-        [
-            (right - left) / (2.0 * step),
-            (left - 2.0 * middle + right) / (step * step),
-        ]
-    };
-    let [rise, bend] = shape(&near(at, false)?);
+    let [rise, bend] = shape(&near(at, false)?, step);
     let is_inside = at > BAND[0] * 1.001 && at < BAND[1] / 1.001 && bend < 0.0;
     // Near the peak, magnitudes agree to rounding long before the frequency is accurate, so the last steps search for
     // the root of the derivative.
     let at = if is_inside { at - rise / bend } else { at };
     let near = near(at, wanted)?;
-    let [_, bend] = shape(&near);
+    let [_, bend] = shape(&near, step);
     let size: Vec<f64> = near.value.iter().map(|value| value.norm()).collect();
     let slope = |slopes: &[Complex<f64>]| {
         let by = |line: usize| (near.value[line].conj() * slopes[line]).re / size[line];
@@ -83,14 +69,30 @@ pub(crate) fn highest<M: Model + ?Sized>(
         };
         [by(1), shift]
     };
+    let slopes = near.jacobian.iter();
     Some(Resonance {
         value: [size[1], at],
-        slopes: near
-            .jacobian
-            .iter()
-            .map(|(parameter, slopes)| (*parameter, slope(slopes)))
-            .collect(),
+        slopes: slopes.map(|(parameter, slopes)| (*parameter, slope(slopes))).collect(),
     })
+}
+
+/// The frequency of the largest magnitude of a ratio, given over the whole band, to within the last refinement.
+fn position(surveyed: &[Complex<f64>], ratio: impl Fn(&[f64]) -> Option<Vec<Complex<f64>>>) -> Option<f64> {
+    let mut band = about_largest(&spaced(BAND, LINES), surveyed)?;
+    for _ in 0..REFINEMENTS {
+        let frequency = spaced(band, REFINED_LINES);
+        band = about_largest(&frequency, &ratio(&frequency)?)?;
+    }
+    Some((band[0] * band[1]).sqrt())
+}
+
+/// First and second derivative of the magnitude at the middle of three frequencies, `step` apart.
+fn shape(near: &Ratio, step: f64) -> [f64; 2] {
+    let [left, middle, right] = [0, 1, 2].map(|line| near.value[line].norm());
+    [
+        (right - left) / (2.0 * step),
+        (left - 2.0 * middle + right) / (step * step),
+    ]
 }
 
 /// The frequencies on both sides of the largest magnitude.

@@ -6,6 +6,8 @@
 //! integrators", Acta Numerica 19 (2010), section 2.5, with the correction of the predictor-corrector pairs in Hairer,
 //! Nørsett, Wanner, III.1.
 
+// The matrix of a step.
+mod propagator;
 // Several systems integrated together.
 mod abreast;
 
@@ -13,9 +15,9 @@ use std::array;
 
 pub use abreast::ExponentialAbreast;
 
-use super::matrix::{Lanes, Matrix};
+use super::matrix::Matrix;
 use super::polynomial::{EXTRAPOLATION, LAST_ORDER, PAST, PREDICTION_ERROR, Polynomial, THROUGH, derivatives};
-use crate::vectors::{Loops, widest};
+use propagator::Propagator;
 
 /// A linear system `dx/dt = A x + B f(t, x)`, and the forces `f` that drive it.
 pub trait Driven<const F: usize> {
@@ -219,8 +221,8 @@ impl<const F: usize> ExponentialAdams<F> {
 struct Part {
     states: Vec<usize>,
     forces: Vec<usize>,
-    /// For each step length the matrix from `from` to the next state: columns of four rows, by blocks of rows.
-    propagators: Vec<Vec<Lanes>>,
+    /// For each step length the matrix from `from` to the next state.
+    propagators: Vec<Propagator>,
     /// The predicted last state, then for each force its past values, the last first, and the error of its last
     /// prediction.
     from: Vec<f64>,
@@ -267,22 +269,13 @@ impl Part {
                 corrections.last_order[force][state] = answer(&LAST_ORDER, row);
             }
         }
-        let next = flow.times(&made_of);
-        let block = |first: usize| {
-            let next = &next;
-            (0..next.size()).map(move |column| array::from_fn(|lane| next.entry(first + lane, column)))
-        };
-        self.propagators.push((0..n).step_by(4).flat_map(block).collect());
+        self.propagators.push(Propagator::new(&flow.times(&made_of), n));
     }
 
     /// Predicts the next state.
     #[inline(always)]
     fn predict(&mut self, rung: usize, ahead: &mut [f64]) {
-        widest(Product {
-            blocks: &self.propagators[rung],
-            by: &self.from,
-            result: &mut self.ahead,
-        });
+        self.propagators[rung].apply(&self.from, &mut self.ahead);
         for (&place, value) in self.states.iter().zip(&self.ahead) {
             ahead[place] = *value;
         }
@@ -376,34 +369,5 @@ impl<const F: usize> Linear<F> {
             }
         }
         matrix
-    }
-}
-
-/// A matrix in blocks of four rows times a vector, whose length is a multiple of four.
-struct Product<'a> {
-    blocks: &'a [Lanes],
-    by: &'a [f64],
-    result: &'a mut [f64],
-}
-
-impl Loops for Product<'_> {
-    type Result = ();
-
-    #[inline(always)]
-    fn run(self) {
-        let factors = self.by.as_chunks::<4>().0;
-        let blocks = self.blocks.chunks_exact(self.by.len());
-        for (result, block) in self.result.as_chunks_mut::<4>().0.iter_mut().zip(blocks) {
-            // Four independent sums.
-            let mut sums = [[0.0; 4]; 4];
-            for (columns, factors) in block.as_chunks::<4>().0.iter().zip(factors) {
-                for k in 0..4 {
-                    for lane in 0..4 {
-                        sums[k][lane] += columns[k][lane] * factors[k];
-                    }
-                }
-            }
-            *result = array::from_fn(|lane| (sums[0][lane] + sums[1][lane]) + (sums[2][lane] + sums[3][lane]));
-        }
     }
 }

@@ -46,7 +46,7 @@ function parameterValue({ parameter_value: value, unit, why_no_parameter_value: 
   return value === null ? why : quantity(value, unit, 4);
 }
 
-// The measured cycle in grey, each direction of travel a curve, and its gradient as a line through the middle.
+// The measured cycle, each direction of travel a curve, and its gradient as a line through the middle.
 function loopPlot({ test, displacement, force }, kc, place) {
   const points = displacement.map((d, at) => ({
     x: d,
@@ -67,7 +67,7 @@ function loopPlot({ test, displacement, force }, kc, place) {
     digits: 4,
     curves: [
       { role: 'measured', label: 'outwards', values: branch(true) },
-      { role: 'measured', label: 'inwards', values: branch(false) },
+      { role: 'inwards', values: branch(false) },
       ...(slope ? [{ role: 'before', label: 'gradient', values: line }] : []),
     ],
   });

@@ -91,7 +91,8 @@ function likelihood({ probability }) {
 }
 
 function chance(probability) {
-  return probability > 0.999 ? 'more than 99.9 %' : percent(probability, 3);
+  if (probability > 0.999) return 'more than 99.9 %';
+  return probability < 0.001 ? 'less than 0.1 %' : percent(probability, 3);
 }
 
 function nextBest(chosen) {

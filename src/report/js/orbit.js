@@ -4,8 +4,9 @@
 function orbit(place, asked) {
   const own = inChosenUnits({ height: 300, gaps: true, ...asked });
   const [width, height] = [Math.max(200, place.clientWidth), view.printing ? 150 : 260];
-  const x = alongX({ x: { ...own.x, range: () => padded(null, Math.min(...own.at), Math.max(...own.at)) } }, width);
   const y = upY(own, height);
+  const range = () => padded(null, Math.min(...own.at), Math.max(...own.at));
+  const x = alongX({ x: { ...own.x, range } }, leftOf(y, view.printing ? 5 : 6.5), width);
   const name = place.closest('figure').getAttribute('aria-label');
   place.replaceChildren(
     svg(

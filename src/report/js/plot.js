@@ -57,7 +57,7 @@ function optionsOf(own, place) {
       x: { time: false, distr: x.log ? 3 : 1, range: x.range || (x.log ? tight : undefined) },
       y: { range: y.range || padded },
     },
-    axes: [axis(x, 26, x.log ? 30 : 50), axis(y, room, 40)],
+    axes: [axis(x, 26, x.log ? 30 : 50), axis(y, room, (u, at, low, high, length) => Math.min(28, length / 4))],
     series: [
       { label: x.label, value: (u, v) => (v === null || v === undefined ? '' : say(v)) },
       ...curves.map((curve) => seriesOf(curve, own)),
@@ -74,8 +74,18 @@ const FREQUENCY = {
   label: 'frequency',
   unit: 'Hz',
   log: true,
-  ticks: (u, splits) => splits.map((v) => (v !== null && /^[125]/.test(v.toExponential()) ? plain(v) : '')),
+  ticks: (u, splits) => {
+    const isShown = labelled(splits.filter((v) => v !== null));
+    return splits.map((v) => (v !== null && isShown(v) ? plain(v) : ''));
+  },
 };
+
+// Which of the ticks of a logarithmic axis have a number: those of 1, 2 and 5; on a short axis those of any single digit.
+function labelled(ticks) {
+  const isDigit = (v) => Math.abs(v / Number(v.toPrecision(1)) - 1) < 1e-9;
+  const isRound = (v) => isDigit(v) && /^[125]/.test(v.toExponential(0));
+  return ticks.filter(isRound).length > 1 ? isRound : isDigit;
+}
 
 function polarPlots(column, { curves, below, ...how }) {
   const parts = [

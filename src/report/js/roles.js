@@ -2,6 +2,7 @@
 
 const ROLES = {
   measured: { label: 'measured', width: 4 },
+  inwards: { label: 'inwards', width: 1.6, dash: [2, 3] },
   'measured-a': { label: 'measured A', width: 4 },
   'measured-b': { label: 'measured B', width: 4 },
   band: { label: 'band', width: 0 },
@@ -22,9 +23,8 @@ const PALETTE = ['after', 'before', 'locked', 'vertical', 'start'];
 function sample(role, filled = role === 'band') {
   const { width, dash } = ROLES[role];
   const [fill, stroke] = filled ? [`var(--${role})`, 'none'] : ['none', `var(--${role})`];
-  return svg(
-    'svg',
-    { class: 'sample', viewBox: '0 0 26 10', width: 26, height: 10, 'aria-hidden': 'true' },
+  return swatch(
+    26,
     svg('path', {
       d: filled ? 'M0 1H26V9H0Z' : 'M0 5H26',
       style: `fill:${fill};stroke:${stroke}`,
@@ -34,6 +34,30 @@ function sample(role, filled = role === 'band') {
   );
 }
 
+function swatch(width, shape) {
+  return svg(
+    'svg',
+    { class: 'sample', viewBox: `0 0 ${width} 10`, width, height: 10, 'aria-hidden': 'true' },
+    shape,
+  );
+}
+
 function key(role, text, filled) {
-  return h('span', { class: `key ${role}` }, sample(role, filled), text);
+  return keyed(role, text, sample(role, filled));
+}
+
+// A ring at a point of a plane.
+function ringKey(role, text) {
+  const ring = svg('circle', { cx: 5, cy: 5, r: 4, style: `fill:none;stroke:var(--${role})` });
+  return keyed(role, text, swatch(10, ring));
+}
+
+// A mark at a position of a bar.
+function markKey(role, text, width) {
+  const mark = svg('line', { x1: 3, y1: 0, x2: 3, y2: 10, style: `stroke:var(--${role})`, 'stroke-width': width });
+  return keyed(role, text, swatch(6, mark));
+}
+
+function keyed(role, text, drawing) {
+  return h('span', { class: `key ${role}` }, drawing, text);
 }

@@ -4,7 +4,8 @@ const SKETCH = { left: 44, right: 12, top: 6, bottom: 32 };
 
 function sketch(place, own) {
   const [width, height] = [Math.max(130, place.clientWidth), Math.round(0.52 * own.height)];
-  const [x, y] = [alongX(own, width), upY(own, height)];
+  const y = upY(own, height);
+  const x = alongX(own, leftOf(y, 5), width);
   const lines = own.curves.filter((curve) => curve.role !== 'band' && !curve.hidden);
   const name = place.closest('figure').getAttribute('aria-label');
   place.append(
@@ -19,13 +20,18 @@ function sketch(place, own) {
   drawn(place);
 }
 
-// Axes are `{low, high, at, ticks}`, where `at` gives the position of a value on the paper.
-function alongX({ x, at, from }, width) {
+// Where the plot begins, beside the longest number at its vertical axis; a digit is `digit` wide.
+function leftOf({ ticks }, digit) {
+  return Math.max(SKETCH.left, 20 + digit * Math.max(0, ...ticks.map((v) => plain(v, 4).length)));
+}
+
+// Axes are `{low, high, at, ticks}`, where `at` gives the position of a value on the paper; that along x begins at `begin`.
+function alongX({ x, at, from }, begin, width) {
   const [low, high] = from || (x.range ? x.range() : [at[0], at[at.length - 1]]);
-  const [begin, length] = [SKETCH.left, width - SKETCH.left - SKETCH.right];
+  const length = width - begin - SKETCH.right;
   const share = x.log ? (v) => Math.log(v / low) / Math.log(high / low) : (v) => (v - low) / (high - low);
   const ticks = x.log ? decadeTicks(low, high) : evenTicks(low, high, length / 42);
-  return { low, high, at: (v) => begin + length * share(v), ticks };
+  return { low, high, begin, at: (v) => begin + length * share(v), ticks };
 }
 
 function upY({ y, at, curves, from }, height) {
@@ -45,16 +51,19 @@ function upY({ y, at, curves, from }, height) {
 
 function decadeTicks(low, high) {
   const powers = [...Array(10).keys()].map((n) => 10 ** (n - 4));
-  return powers.flatMap((power) => [1, 2, 5].map((digit) => digit * power)).filter((v) => v >= low && v <= high);
+  const digits = [...Array(9).keys()].map((n) => n + 1);
+  const ticks = powers.flatMap((power) => digits.map((digit) => digit * power)).filter((v) => v >= low && v <= high);
+  return ticks.filter(labelled(ticks));
 }
 
-// At most `most` round values.
+// At most `most` round values, but no fewer than two.
 function evenTicks(low, high, most) {
   const rough = (high - low) / Math.max(2, most);
   const power = 10 ** Math.floor(Math.log10(rough));
   const step = power * [1, 2, 5, 10].find((digit) => digit * power >= rough);
   const first = Math.ceil(low / step);
-  return [...Array(Math.floor(high / step) - first + 1).keys()].map((n) => step * (first + n));
+  const ticks = [...Array(Math.max(0, Math.floor(high / step) - first + 1)).keys()].map((n) => step * (first + n));
+  return ticks.length > 1 || !(high > low) ? ticks : evenTicks(low, high, 1.5 * Math.max(2, most));
 }
 
 function frame(own, x, y, width, height) {
@@ -62,10 +71,10 @@ function frame(own, x, y, width, height) {
   const label = (text, place) => svg('text', { 'text-anchor': 'middle', ...place }, text);
   return [
     x.ticks.map((v) => svg('path', { class: 'grid', d: `M${px(x.at(v))} ${SKETCH.top}V${floor}` })),
-    y.ticks.map((v) => svg('path', { class: 'grid', d: `M${SKETCH.left} ${px(y.at(v))}H${width - SKETCH.right}` })),
+    y.ticks.map((v) => svg('path', { class: 'grid', d: `M${px(x.begin)} ${px(y.at(v))}H${width - SKETCH.right}` })),
     x.ticks.map((v) => label(plain(v, 4), { x: px(x.at(v)), y: floor + 11 })),
-    y.ticks.map((v) => svg('text', { x: SKETCH.left - 3, y: px(y.at(v)) + 3, 'text-anchor': 'end' }, plain(v, 4))),
-    label(own.x.text, { x: (SKETCH.left + width) / 2, y: height - 5 }),
+    y.ticks.map((v) => svg('text', { x: px(x.begin - 3), y: px(y.at(v)) + 3, 'text-anchor': 'end' }, plain(v, 4))),
+    label(own.x.text, { x: px((x.begin + width) / 2), y: height - 5 }),
     label(own.y.text, { transform: `translate(8 ${floor / 2 + 3}) rotate(-90)` }),
   ];
 }

@@ -198,6 +198,11 @@ impl Rolled {
     }
 
     pub fn text(&self) -> String {
+        let notes = render::notes(&self.notices, &self.at_start);
+        format!("{}\n{}{notes}", self.vibration_table().text(), self.load_table().text())
+    }
+
+    fn vibration_table(&self) -> Table {
         let acceleration = |value: f64| number(units::value(value, ACCELERATION), 4);
         let mut vibration = Table::new([
             "road",
@@ -223,6 +228,11 @@ impl Rolled {
                 number(own.vdv, 4),
             ]);
         }
+        vibration
+    }
+
+    fn load_table(&self) -> Table {
+        let force = |value: f64| number(units::value(value, "N"), 4);
         let mut loads = Table::new([
             "road",
             "duration_s",
@@ -234,7 +244,6 @@ impl Rolled {
             "load_unit",
             "lift_offs",
         ]);
-        let force = |value: f64| number(units::value(value, "N"), 4);
         for own in &self.loads {
             loads.row(vec![
                 own.road.clone(),
@@ -248,8 +257,7 @@ impl Rolled {
                 own.lift_offs.to_string(),
             ]);
         }
-        let notes = render::notes(&self.notices, &self.at_start);
-        format!("{}\n{}{notes}", vibration.text(), loads.text())
+        loads
     }
 
     /// A row for each road, mass and axis.

@@ -12,6 +12,7 @@ mod uncertainty;
 mod front_and_space;
 
 use qcar_runtime::error::{InputError, Problem};
+use qcar_runtime::mean::mean;
 use qcar_runtime::metric::{Ground, Reading};
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::target::{Coupling, Knob, Limit, Move, Sense};
@@ -105,21 +106,11 @@ impl Plan {
             run: None,
             unit: "1".into(),
         }));
-        let mut today = measured.clone();
-        today.extend(
-            means
-                .iter()
-                .map(|of| of.iter().map(|&at| measured[at]).sum::<f64>() / of.len() as f64),
-        );
-        let metrics = planner.ground.metrics();
-        let aims = fronts.iter().enumerate().map(|(at, (metric, sense))| Aim {
-            metric: metrics[*metric].name.clone(),
-            unit: metrics[*metric].unit.into(),
-            result: measured.len() + at,
-            sense: *sense,
-        });
+        let averages = means.iter().map(|of| mean(of.iter().map(|&at| measured[at])));
+        let today = measured.iter().copied().chain(averages).collect();
+        let generations = read.file.front.as_ref().and_then(|front| front.generations);
         Ok(Self {
-            aims: aims.collect(),
+            aims: aims(planner.ground, &fronts, measured.len()),
             couplings: couplings.into_iter().map(|(_, own)| own).collect(),
             knobs,
             units,
@@ -132,14 +123,21 @@ impl Plan {
             cuts,
             doubts,
             sure,
-            generations: read
-                .file
-                .front
-                .as_ref()
-                .and_then(|front| front.generations)
-                .unwrap_or(40),
+            generations: generations.unwrap_or(40),
         })
     }
+}
+
+/// What a front is about: means of metrics, which come after the `measured` readings.
+fn aims(ground: &Ground<'_>, fronts: &[(usize, Sense)], measured: usize) -> Vec<Aim> {
+    let metrics = ground.metrics();
+    let aim = |(at, (metric, sense)): (usize, &(usize, Sense))| Aim {
+        metric: metrics[*metric].name.clone(),
+        unit: metrics[*metric].unit.into(),
+        result: measured + at,
+        sense: *sense,
+    };
+    fronts.iter().enumerate().map(aim).collect()
 }
 
 /// Sets the readings of the ground without duplicates. Returns the positions of the readings of each metric of the

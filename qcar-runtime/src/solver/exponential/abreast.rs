@@ -78,12 +78,12 @@ impl<const F: usize> ExponentialAbreast<F> {
             rows.iter_mut().zip(values).for_each(|(row, value)| row[lane] = *value);
         };
         for (part, own) in self.parts.iter_mut().zip(&one.parts) {
-            let (columns, blocks) = (part.from.len(), &own.propagators[one.rung]);
             put(&mut part.from, &own.from);
-            for (row, entries) in part.propagator.chunks_exact_mut(columns).enumerate() {
-                let block = &blocks[row / 4 * columns..][..columns];
-                let column = entries.iter_mut().zip(block);
-                column.for_each(|(entry, rows)| entry[lane] = rows[row % 4]);
+            part.propagator.iter_mut().for_each(|entry| entry[lane] = 0.0);
+            let (rows, columns) = (part.states.len(), part.from.len());
+            let entries = own.propagators[one.rung].entries();
+            for (row, column, value) in entries.filter(|(row, _, _)| *row < rows) {
+                part.propagator[row * columns + column][lane] = value;
             }
         }
         let corrections = &one.corrections[one.rung];

@@ -25,7 +25,7 @@ function front(data) {
     section(
       'front',
       'Front',
-      h('p', {}, `Of ${own.evaluated} designs these ${own.points.length} meet all targets and none is better in every metric; values are means over the runs. Rings are `, key('before', 'today'), ' and ', key('after', 'the design of least cost'), '.'),
+      h('p', {}, `Of ${own.evaluated} designs these ${own.points.length} meet all targets and none is better in every metric; values are means over the runs. Rings are `, ringKey('before', 'today'), ' and ', ringKey('after', 'the design of least cost'), '.'),
       h('div', { class: 'columns two' }, figures),
       details('Designs of the points', table('Designs of the front', columns, rows)),
     ),

@@ -22,13 +22,13 @@ function intervals(data) {
   ]);
   const { space } = data;
   const words = space
-    ? `Of the designs in the solution space ${percent(space.probability, 3)} meet all targets (at least ${percent(space.at_least, 3)} with 95 % confidence; wanted: ${percent(space.wanted, 3)}). Each team may choose freely within its interval.`
+    ? `Of the designs in the solution space ${percent(space.probability, 3)} meet all targets (at least ${percent(space.at_least, 3)} with 95\u00a0% confidence; wanted: ${percent(space.wanted, 3)}). Each team may choose freely within its interval.`
     : 'Each bar is the range of a parameter.';
   const trial = tried(data);
   const element = section(
     'parameters',
     'Parameters',
-    h('p', {}, words, ' A thin mark is ', key('before', 'today'), ', a thick one ', key('after', 'the design'), '.'),
+    h('p', {}, words, ' The thin mark is ', markKey('before', 'today', 1.5), ', the thick one ', markKey('after', 'the design', 3), '.'),
     table('Parameters', columns, rows),
     trial.element,
   );
