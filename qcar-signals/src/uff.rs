@@ -42,6 +42,16 @@ pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
             }
         }
     }
+    if recording.signals.is_empty() && recording.passed_over.is_empty() {
+        let remedy = "export the functions over time too; if they were there, the file was cut off: copy it again";
+        let found = "no dataset 58";
+        return Err(Fault::new(
+            lines.end(),
+            found,
+            "measured functions in datasets 58 or 58b",
+            remedy,
+        ));
+    }
     Ok(recording)
 }
 
@@ -121,8 +131,12 @@ impl<'a> Lines<'a> {
         self.next().ok_or_else(|| self.cut(format!("no {what}")))
     }
 
+    fn end(&self) -> Place {
+        Place::Byte(self.bytes.len() as u64)
+    }
+
     fn cut(&self, found: String) -> Box<Fault> {
-        Fault::cut_off(Place::Byte(self.bytes.len() as u64), found, "whole datasets")
+        Fault::cut_off(self.end(), found, "whole datasets")
     }
 }
 
