@@ -72,9 +72,11 @@ fn of_no_format(bytes: &[u8]) -> Box<Fault> {
 fn decoded(bytes: &[u8]) -> Read<Cow<'_, str>> {
     let utf16 = |order: fn([u8; 2]) -> u16| {
         let units = bytes[2..].chunks_exact(2).map(|two| order([two[0], two[1]]));
-        char::decode_utf16(units)
-            .collect::<Result<Cow<'_, str>, _>>()
-            .map_err(|_| Fault::damaged(Place::File, "a UTF-16 text with half a character", "whole characters"))
+        let decoded = char::decode_utf16(units).collect::<Result<Cow<'_, str>, _>>();
+        decoded.ok().filter(|_| bytes.len().is_multiple_of(2)).ok_or_else(|| {
+            let place = Place::Byte(bytes.len() as u64);
+            Fault::cut_off(place, "a UTF-16 text with half a character", "whole characters")
+        })
     };
     match bytes {
         [0xff, 0xfe, ..] => utf16(u16::from_le_bytes),
