@@ -388,8 +388,9 @@ impl Function {
         let width = if self.double { 20 } else { 13 };
         let imaginary = self.complex.then_some(width);
         let of_a_sample = [(!self.even).then_some(13), Some(width), imaginary];
-        let numbers = of_a_sample.iter().flatten().count();
-        let mut widths = of_a_sample.into_iter().flatten().cycle();
+        let of_a_sample: Vec<usize> = of_a_sample.into_iter().flatten().collect();
+        let numbers = of_a_sample.len();
+        let mut widths = of_a_sample.iter().copied().cycle();
         let mut all = Vec::with_capacity((content.bytes.len() - content.at) / 13);
         for line in content {
             let (mut from, end) = (0, line.bytes.trim_ascii_end().len());
