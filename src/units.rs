@@ -57,6 +57,12 @@ impl Units {
         self.0.iter().find(|own| own.declared.is_like(si))
     }
 
+    /// The shown unit for a unit of a measured file, and the latter.
+    fn of_file(&self, unit: &str) -> Option<(&ShownUnit, Declared)> {
+        let declared = Declared::of(unit)?;
+        Some((self.of_kind(&declared.coherent)?, declared))
+    }
+
     /// Script that passes these units to a page.
     fn script(&self) -> String {
         if self.0.is_empty() {
@@ -104,6 +110,14 @@ pub fn name(si: &str) -> &str {
 /// A value in SI, converted to the shown unit.
 pub fn value(value: f64, si: &str) -> f64 {
     CHOSEN.get().map_or(value, |units| units.value(value, si))
+}
+
+/// A unit of a measured file, or the unit of its kind that the user chose, and a value of the file in it.
+pub fn of_file(value: f64, unit: &str) -> (f64, &str) {
+    let chosen = CHOSEN.get().and_then(|units| units.of_file(unit));
+    chosen.map_or((value, unit), |(own, file)| {
+        (own.declared.shown(file.si(value)), &own.name)
+    })
 }
 
 /// A text with its shown unit; a pure number has none.

@@ -5,18 +5,16 @@ use std::io::{self, BufReader, ErrorKind, Read};
 use std::path::Path;
 
 use qcar_signals::content::Content;
+use qcar_signals::limit::{VARIABLE, given, of_unpacked};
 use qcar_signals::read::{is_packed, unpacked};
 
 use crate::error::{InputError, Place, Problem};
 
-/// Largest size of a text or an unpacked file, bytes, unless [`VARIABLE`] sets another.
+/// Largest size of a text, bytes, unless [`VARIABLE`] sets another.
 const MOST: u64 = 256 << 20;
 
 /// Largest size of a measured file that is not packed, whose size is limited by its disk.
 const MOST_PLAIN: u64 = 4 << 30;
-
-/// The environment variable with another limit, in MiB.
-const VARIABLE: &str = "QCAR_MAX_MIB";
 
 /// Opens a regular file: not a folder, a device or a pipe, which might never end.
 ///
@@ -33,26 +31,28 @@ pub fn open(path: &Path) -> io::Result<File> {
     }
 }
 
-/// The content of `inner`, with an error of [`ErrorKind::FileTooLarge`] beyond the limit.
-pub fn limited<R: Read>(inner: R) -> impl Read {
-    let left = limit().unwrap_or(MOST);
+/// The content of a file that is no measured one, with an error of [`ErrorKind::FileTooLarge`] beyond the limit.
+fn limited(inner: impl Read) -> impl Read {
+    let left = given().unwrap_or(MOST);
     Limited { inner, left }
 }
 
-/// The limit that the user has set, bytes.
-fn limit() -> Option<u64> {
-    let given = std::env::var(VARIABLE).ok()?.parse::<u64>().ok()?;
-    Some(given.saturating_mul(1 << 20))
+/// The same for a file that is packed.
+fn limited_unpacked(file: File) -> io::Result<impl Read> {
+    let left = of_unpacked(file.metadata()?.len());
+    let inner = unpacked(BufReader::new(file));
+    Ok(Limited { inner, left })
 }
 
 /// The content of a measured file, unpacked if it is compressed by gzip; otherwise it stays on the disk until it is
 /// read.
 ///
 /// # Errors
-/// Fails as [`open`] does, beyond 4 GiB or 256 MiB unpacked (unless another limit is set), or without enough memory.
+/// Fails as [`open`] does, beyond 4 GiB or what a packed file may give (unless another limit is set), or without enough
+/// memory.
 fn measured(path: &Path) -> io::Result<Content<'static>> {
     let file = open(path)?;
-    if file.metadata()?.len() > limit().unwrap_or(MOST_PLAIN) {
+    if file.metadata()?.len() > given().unwrap_or(MOST_PLAIN) {
         return Err(too_large());
     }
     let content = Content::of_file(file)?;
@@ -60,7 +60,7 @@ fn measured(path: &Path) -> io::Result<Content<'static>> {
         return Ok(content);
     }
     let mut whole = Vec::new();
-    limited(unpacked(BufReader::new(open(path)?))).read_to_end(&mut whole)?;
+    limited_unpacked(open(path)?)?.read_to_end(&mut whole)?;
     Ok(Content::of_bytes(whole))
 }
 
@@ -87,7 +87,7 @@ pub fn measured_file(path: &Path, wrong_path: &str) -> Result<Content<'static>, 
 /// A text file.
 ///
 /// # Errors
-/// Fails as [`open`] and [`limited`] do, or if the bytes are not UTF-8.
+/// Fails as [`open`] does, beyond the limit, or if the bytes are not UTF-8.
 pub fn text(path: &Path) -> io::Result<String> {
     let mut text = String::new();
     limited(open(path)?).read_to_string(&mut text)?;
@@ -97,12 +97,12 @@ pub fn text(path: &Path) -> io::Result<String> {
 /// A table that is read row by row, unpacked if its name ends in `.gz`.
 ///
 /// # Errors
-/// Fails as [`open`] does; the reader fails as [`limited`] does.
+/// Fails as [`open`] does; the reader fails beyond the limit.
 pub fn table(path: &Path) -> io::Result<Box<dyn Read>> {
-    let plain = BufReader::new(open(path)?);
+    let file = open(path)?;
     Ok(match path.extension().is_some_and(|end| end == "gz") {
-        true => Box::new(limited(unpacked(plain))),
-        false => Box::new(limited(plain)),
+        true => Box::new(limited_unpacked(file)?),
+        false => Box::new(limited(BufReader::new(file))),
     })
 }
 

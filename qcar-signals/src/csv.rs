@@ -1,10 +1,12 @@
 //! Text tables: comma, semicolon, tab, bar or spaces between columns, decimal point or comma, with or without a row of units,
 //! in UTF-8, UTF-16 or Windows-1252.
 
+mod plain;
 mod rows;
 
 use std::borrow::Cow;
 
+use plain::PlainRows;
 use rows::{Row, Rows};
 
 use crate::bytes::text;
@@ -70,9 +72,11 @@ fn of_no_format(bytes: &[u8]) -> Box<Fault> {
 fn decoded(bytes: &[u8]) -> Read<Cow<'_, str>> {
     let utf16 = |order: fn([u8; 2]) -> u16| {
         let units = bytes[2..].chunks_exact(2).map(|two| order([two[0], two[1]]));
-        char::decode_utf16(units)
-            .collect::<Result<Cow<'_, str>, _>>()
-            .map_err(|_| Fault::damaged(Place::File, "a UTF-16 text with half a character", "whole characters"))
+        let decoded = char::decode_utf16(units).collect::<Result<Cow<'_, str>, _>>();
+        decoded.ok().filter(|_| bytes.len().is_multiple_of(2)).ok_or_else(|| {
+            let place = Place::Byte(bytes.len() as u64);
+            Fault::cut_off(place, "a UTF-16 text with half a character", "whole characters")
+        })
     };
     match bytes {
         [0xff, 0xfe, ..] => utf16(u16::from_le_bytes),
@@ -106,27 +110,30 @@ fn fill(mut rows: Rows<'_>, decimals: Decimals, columns: Vec<Column>, first: u64
     let width = columns.last().map_or(0, |column| column.index + 1);
     let mut numbers = vec![Vec::new(); columns.len()];
     let (mut row, mut lines) = (Row::default(), Vec::new());
-    while rows.read(&mut row)? {
-        let Row { line, ref cells } = row;
-        if line < first || cells.iter().all(|cell| cell.is_empty()) {
-            continue;
+    let mut plain_rows = PlainRows::new(rows.delimiter(), decimals);
+    while let Some((line, text)) = rows.line() {
+        if line >= first
+            && let Some(plain) = plain_rows.read(text, width)
+        {
+            if lines.is_empty() {
+                // As if all rows were so long, but in no more memory than the text has.
+                let count = rows.bytes_left() / text.len().max(size_of::<f64>() * columns.len());
+                numbers.iter_mut().for_each(|numbers| numbers.reserve_exact(count));
+            }
+            for (column, numbers) in columns.iter().zip(&mut numbers) {
+                numbers.push(plain[column.index]);
+            }
+            lines.push(line);
+            rows.skip(text.len());
+        } else if rows.read(&mut row)? && row.line >= first && !row.is_empty() {
+            row.check_width(width)?;
+            for (column, numbers) in columns.iter().zip(&mut numbers) {
+                numbers.push(decimals.number_of(&row, column)?);
+            }
+            lines.push(row.line);
         }
-        if cells.len() < width || cells[width..].iter().any(|cell| !cell.is_empty()) {
-            let found = format!("{} columns", cells.len());
-            let remedy = "complete the row, or delete what is no part of the table";
-            let expected = format!("{width} columns as above");
-            return Err(Fault::new(Place::Line(line), found, expected, remedy));
-        }
-        for (column, numbers) in columns.iter().zip(&mut numbers) {
-            let cell = &cells[column.index];
-            numbers.push(decimals.number(cell).ok_or_else(|| {
-                let place = Place::Cell(line, column.name.clone());
-                let remedy = "correct the cell, or leave it empty";
-                Fault::new(place, format!("`{cell}`"), decimals.expected(), remedy)
-            })?);
-        }
-        lines.push(line);
     }
+    numbers.iter_mut().for_each(Vec::shrink_to_fit);
     Ok((Filled { columns, numbers }, lines))
 }
 
@@ -189,6 +196,16 @@ impl Decimals {
             Some(number) => Cell::Number(number),
             None => Cell::Text(cell.into()),
         }
+    }
+
+    /// The number in a column of a row.
+    fn number_of(self, row: &Row<'_>, column: &Column) -> Read<f64> {
+        let cell = &row.cells[column.index];
+        self.number(cell).ok_or_else(|| {
+            let place = Place::Cell(row.line, column.name.clone());
+            let remedy = "correct the cell, or leave it empty";
+            Fault::new(place, format!("`{cell}`"), self.expected(), remedy)
+        })
     }
 
     /// The number in a cell, NaN for a missing one; `None` if the cell contains anything else.

@@ -1,12 +1,14 @@
 //! Workbooks of Excel (.xlsx): tables of numbers on their sheets, and named cells.
 
 use std::collections::{BTreeMap, HashMap};
-use std::io::Cursor;
+use std::io::{Cursor, Read as _};
 use std::panic::catch_unwind;
 
 use calamine::{DataRef, Reader, Xlsx, XlsxError};
+use zip::ZipArchive;
 
 use crate::error::{Fault, Place, Read};
+use crate::limit::Budget;
 use crate::signal::{Recording, Scalar, Value};
 use crate::table::{Cell, Column, Filled, Layout};
 
@@ -59,11 +61,13 @@ pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
 }
 
 fn workbook(bytes: &[u8]) -> Read<Recording> {
+    let budget = Budget::of_file(bytes.len() as u64);
+    count_unpacked(bytes, &budget)?;
     let mut workbook: Xlsx<_> = Xlsx::new(Cursor::new(bytes)).map_err(|error| unreadable(Place::File, &error))?;
     let mut recording = Recording::new("xlsx");
     let mut sheets = HashMap::new();
     for name in workbook.sheet_names() {
-        let sheet = Sheet::read(&mut workbook, &name)?;
+        let sheet = Sheet::read(&mut workbook, &name, &budget)?;
         sheet.add_table(&mut recording)?;
         sheets.insert(name, sheet);
     }
@@ -76,6 +80,24 @@ fn workbook(bytes: &[u8]) -> Read<Recording> {
         }
     }
     Ok(recording)
+}
+
+/// Counts what the parts of a workbook give, before any of it is kept. A damaged part is left to the reader.
+fn count_unpacked(bytes: &[u8], budget: &Budget) -> Read<()> {
+    let Ok(mut archive) = ZipArchive::new(Cursor::new(bytes)) else {
+        return Ok(());
+    };
+    let mut piece = vec![0; 1 << 16];
+    for index in 0..archive.len() {
+        let Ok(mut part) = archive.by_index(index) else {
+            continue;
+        };
+        let place = Place::Item(part.name().unwrap_or_default().into());
+        while let Ok(count @ 1..) = part.read(&mut piece) {
+            budget.count(count as u64, &place)?;
+        }
+    }
+    Ok(())
 }
 
 fn unreadable(place: Place, error: &XlsxError) -> Box<Fault> {
@@ -97,7 +119,7 @@ struct Sheet {
 }
 
 impl Sheet {
-    fn read(workbook: &mut Xlsx<Cursor<&[u8]>>, name: &str) -> Read<Sheet> {
+    fn read(workbook: &mut Xlsx<Cursor<&[u8]>>, name: &str, budget: &Budget) -> Read<Sheet> {
         let mut sheet = Sheet {
             name: name.into(),
             rows: BTreeMap::new(),
@@ -138,6 +160,10 @@ impl Sheet {
                     continue;
                 }
             };
+            // Any number of cells may refer to one long text.
+            if let Cell::Text(text) = &value {
+                budget.count(text.len() as u64, &sheet.place(row, column))?;
+            }
             sheet.rows.entry(row).or_default().insert(column, value);
         }
         Ok(sheet)

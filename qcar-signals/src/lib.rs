@@ -19,11 +19,12 @@ pub mod find;
 pub mod resample;
 // Flaws of samples.
 pub mod health;
+// The most that packed data may give.
+pub mod limit;
 // The bytes of a file, in memory or on the disk.
 pub mod content;
 // Checked access to the bytes of a file.
 mod bytes;
-// Decimal numbers in a text.
 // Spellings of units.
 mod units;
 // Conversion of units to SI.

@@ -10,6 +10,7 @@ use crate::bytes::{Bytes, Order};
 use crate::content::Content;
 use crate::error::{Fault, Place, Read, ReadError};
 use crate::find::Wanted;
+use crate::limit::Budget;
 use crate::signal::Recording;
 use crate::{crg, csv, excel, mat, mdf, rpc, tdms, uff};
 
@@ -18,12 +19,13 @@ const GZIP: &[u8] = b"\x1f\x8b";
 
 /// Reads a file of any format of this crate, also compressed by gzip. The content determines the format, not the name.
 ///
-/// Memory: eight bytes for each sample, two for RPC III; for a packed or text file also its unpacked size, which is at
-/// most about a thousand times the packed one. Declared sizes are checked against the existing bytes before memory is
+/// Memory: eight bytes for each sample, two for RPC III; for a packed or text file also its unpacked size, up to
+/// the limit of [`limit::of_unpacked`](crate::limit::of_unpacked). Declared sizes are checked against the existing bytes before memory is
 /// allocated.
 ///
 /// # Errors
-/// Fails if the file cannot be opened, has an unknown format, is cut off, damaged or packed twice, with the position.
+/// Fails if the file cannot be opened, has an unknown format, is cut off, damaged, packed twice or unpacks to
+/// more than the limit, with the position.
 pub fn read(file: &Path) -> Result<Recording, ReadError> {
     let opened = File::open(file).and_then(Content::of_file);
     let recognised = opened.map_err(|error| unreadable(&error)).and_then(|content| {
@@ -32,10 +34,7 @@ pub fn read(file: &Path) -> Result<Recording, ReadError> {
             return channels(&content, &Wanted::All);
         }
         let packed = content.take(0, content.length()).map_err(|error| unreadable(&error))?;
-        channels(
-            &Content::of_bytes(whole(unpacked(&packed[..]), packed.len())?),
-            &Wanted::All,
-        )
+        channels(&Content::of_bytes(whole(&packed)?), &Wanted::All)
     });
     recognised.map_err(|fault| ReadError {
         file: file.into(),
@@ -58,16 +57,15 @@ pub fn unpacked<R: io::Read>(packed: R) -> impl io::Read {
     MultiGzDecoder::new(packed)
 }
 
-fn whole(mut content: impl io::Read, packed: usize) -> Read<Vec<u8>> {
-    let mut whole = Vec::new();
-    match content.read_to_end(&mut whole) {
-        Ok(_) => Ok(whole),
-        Err(error) => Err(Fault::cut_off(
-            Place::Byte(packed as u64),
+fn whole(packed: &[u8]) -> Read<Vec<u8>> {
+    let length = packed.len() as u64;
+    Budget::of_file(length).unpack(unpacked(packed), &Place::File, |error| {
+        Fault::cut_off(
+            Place::Byte(length),
             format!("packed data that end with: {error}"),
             "a whole .gz file",
-        )),
-    }
+        )
+    })
 }
 
 /// The same for the content of a file, unpacked.

@@ -1,5 +1,6 @@
 //! Channels, each with its own time base: the result of reading any format.
 
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use crate::error::{Fault, Place, Read};
@@ -138,7 +139,11 @@ impl Recording {
             several => {
                 let places: Vec<String> = several.iter().map(|signal| signal.qualified()).collect();
                 let found = format!("{} channels: {}", several.len(), places.join(", "));
-                let remedy = "write the name with its group, `group/name`";
+                let groups: HashSet<&str> = several.iter().map(|signal| signal.source.group.as_str()).collect();
+                let remedy = match groups.len() == several.len() {
+                    true => "write the name with its group, `group/name`",
+                    false => "give them different names in the file, or export it again without one of them",
+                };
                 Err(Fault::new(Place::File, found, "one channel of this name", remedy).of(name))
             }
         }

@@ -42,6 +42,16 @@ pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
             }
         }
     }
+    if recording.signals.is_empty() && recording.passed_over.is_empty() {
+        let remedy = "export the functions over time too; if they were there, the file was cut off: copy it again";
+        let found = "no dataset 58";
+        return Err(Fault::new(
+            lines.end(),
+            found,
+            "measured functions in datasets 58 or 58b",
+            remedy,
+        ));
+    }
     Ok(recording)
 }
 
@@ -121,8 +131,12 @@ impl<'a> Lines<'a> {
         self.next().ok_or_else(|| self.cut(format!("no {what}")))
     }
 
+    fn end(&self) -> Place {
+        Place::Byte(self.bytes.len() as u64)
+    }
+
     fn cut(&self, found: String) -> Box<Fault> {
-        Fault::cut_off(Place::Byte(self.bytes.len() as u64), found, "whole datasets")
+        Fault::cut_off(self.end(), found, "whole datasets")
     }
 }
 
@@ -374,8 +388,9 @@ impl Function {
         let width = if self.double { 20 } else { 13 };
         let imaginary = self.complex.then_some(width);
         let of_a_sample = [(!self.even).then_some(13), Some(width), imaginary];
-        let numbers = of_a_sample.iter().flatten().count();
-        let mut widths = of_a_sample.into_iter().flatten().cycle();
+        let of_a_sample: Vec<usize> = of_a_sample.into_iter().flatten().collect();
+        let numbers = of_a_sample.len();
+        let mut widths = of_a_sample.iter().copied().cycle();
         let mut all = Vec::with_capacity((content.bytes.len() - content.at) / 13);
         for line in content {
             let (mut from, end) = (0, line.bytes.trim_ascii_end().len());

@@ -133,6 +133,25 @@ fn workbooks() {
     survives(&["table/kc_bounce.xlsx", "table/vehicle_template.xlsx"], 2000);
 }
 
+#[test]
+fn a_file_that_is_cut_anywhere_is_refused() {
+    let samples = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/samples");
+    for folder in ["mdf", "mat", "rpc", "tdms", "uff", "crg"] {
+        for entry in fs::read_dir(samples.join(folder)).unwrap() {
+            let path = entry.unwrap().path();
+            let bytes = fs::read(&path).unwrap();
+            for sixteenth in 0..16 {
+                let cut = &bytes[..bytes.len() * sixteenth / 16];
+                assert!(recognise(cut).is_err(), "{sixteenth} sixteenths of {}", path.display());
+            }
+        }
+    }
+    let hdf5 = sample("mat/h5py_latest.mat");
+    refused(&hdf5[..3659], &["3659 bytes", "3903 bytes", "cut off"]);
+    let matlab = sample("mat/testlab_v73.mat");
+    refused(&matlab[..60_000], &["60000 bytes", "cut off"]);
+}
+
 /// A file in which one number is replaced, to claim far more than there is.
 fn claiming(name: &str, at: usize, number: &[u8]) -> Vec<u8> {
     let mut bytes = sample(name);

@@ -394,6 +394,13 @@ fn a_channel_that_two_groups_have_needs_its_group() {
     assert_eq!(recording.signal("string_pot_100Hz/body_left_z").unwrap().unit, "mm");
     let fault = recording.signal("wheel").unwrap_err().to_string();
     says(&fault, &["no channel of this name", "qcar inspect"]);
+    // Groups do not help where one group has both.
+    let twice = recognise(b"time;a;a\ns;g;g\n0;1;2\n0.1;2;3\n").unwrap();
+    let fault = twice.signal("a").unwrap_err().to_string();
+    says(
+        &fault,
+        &["2 channels", "line 2", "give them different names in the file"],
+    );
 }
 
 /// Dialects of one table: each line is a separator, a decimal sign and what stands around.
@@ -437,6 +444,8 @@ fn a_table_is_the_same_in_every_dialect() {
         .flat_map(u16::to_le_bytes)
         .collect();
     agrees(&utf16);
+    let cut = recognise(&utf16[..utf16.len() - 1]).unwrap_err().to_string();
+    says(&cut, &["half a character", "cut off"]);
     let headings = written(",", ".", "\n").replace("t,a,b\ns,g,mm", "t [s],a [g],b (mm)");
     agrees(headings.as_bytes());
 }

@@ -10,6 +10,7 @@ use crate::failure::Failure;
 use crate::json;
 use crate::table::{Table, number, or_dash};
 use crate::terminal::prose;
+use crate::units;
 use crate::verbs::Format;
 
 // Summary of a channel.
@@ -183,17 +184,18 @@ fn table<T>(contents: &Contents<T>) -> String {
     ];
     let mut table = Table::new(headings);
     for (signal, course) in contents.channels() {
+        let shown = |value: Option<f64>| or_dash(value.map(|value| units::of_file(value, &signal.unit).0), DIGITS);
         table.row(vec![
             signal.name.clone(),
             signal.source.group.clone(),
-            signal.unit.clone(),
+            units::of_file(0.0, &signal.unit).1.into(),
             course.samples.to_string(),
             course.missing.to_string(),
             or_dash(course.rate, DIGITS),
             or_dash(course.start, DIGITS),
-            or_dash(course.min, DIGITS),
-            or_dash(course.max, DIGITS),
-            or_dash(course.rms, DIGITS),
+            shown(course.min),
+            shown(course.max),
+            shown(course.rms),
             course.sparkline.clone(),
         ]);
     }
@@ -204,14 +206,14 @@ fn scalars(scalars: &[Scalar]) -> String {
     let mut table = Table::new(["value", "unit", "is", "place"]);
     for scalar in scalars {
         let is = match &scalar.value {
-            Value::Number(value) => number(*value, DIGITS),
+            Value::Number(value) => number(units::of_file(*value, &scalar.unit).0, DIGITS),
             Value::Text(text) => format!("`{text}` (a text)"),
             Value::Empty => "empty".into(),
             Value::Formula(formula) => format!("={formula} (never computed)"),
         };
         table.row(vec![
             scalar.name.clone(),
-            scalar.unit.clone(),
+            units::of_file(0.0, &scalar.unit).1.into(),
             is,
             scalar.place.to_string(),
         ]);

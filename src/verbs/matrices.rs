@@ -11,9 +11,12 @@ use crate::parameters;
 use crate::state_space::{Rows, StateSpace, state_space, without_sensitivities};
 use crate::table::{Table, number};
 use crate::terminal::prose;
+use crate::units;
 use crate::verbs::{Format, ModelArguments};
 
 /// Print A, B, C, D and their derivatives by every parameter
+///
+/// A row of A and B is the rate of a state, its unit per second.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar matrices quarter_car --set k_tire=2e5\n  qcar matrices axle_a --params models/campaigns/axle_a_rig --axis z --format json"
@@ -71,14 +74,17 @@ fn check_axis(about: &About, axis: Option<&str>) -> Result<(), Failure> {
     }
 }
 
+/// A state, input or output, and its SI unit.
+type Named<'a> = (&'a str, &'a str);
+
 fn text(of: &StateSpace) -> String {
-    let rows: Vec<&str> = of.states.iter().map(|s| &*s.name).collect();
-    let inputs: Vec<&str> = of.inputs.iter().map(|i| &*i.variable).collect();
-    let outputs: Vec<&str> = of.outputs.iter().map(|o| &*o.name).collect();
+    let states: Vec<Named> = of.states.iter().map(|state| (&*state.name, &*state.unit)).collect();
+    let inputs: Vec<Named> = of.inputs.iter().map(|input| (&*input.variable, &*input.unit)).collect();
+    let outputs: Vec<Named> = of.outputs.iter().map(|output| (&*output.name, &*output.unit)).collect();
     let blocks = [
-        ("A", &rows, &rows),
-        ("B", &rows, &inputs),
-        ("C", &outputs, &rows),
+        ("A", &states, &states),
+        ("B", &states, &inputs),
+        ("C", &outputs, &states),
         ("D", &outputs, &inputs),
     ];
     let tables = blocks.map(|(name, rows, columns)| block(name, rows, columns, &of.matrices[name]));
@@ -86,11 +92,16 @@ fn text(of: &StateSpace) -> String {
     format!("{note}{}", tables.join("\n"))
 }
 
-fn block(name: &str, rows: &[&str], columns: &[&str], values: &Rows) -> String {
-    let mut table = Table::with_headings([name].iter().chain(columns).map(|c| c.to_string()).collect());
+fn block(name: &str, rows: &[Named], columns: &[Named], values: &Rows) -> String {
+    let heading = |&(name, unit): &Named| units::heading(name, unit);
+    let headings = std::iter::once(name.into()).chain(columns.iter().map(heading));
+    let mut table = Table::with_headings(headings.collect());
     for (row, values) in rows.iter().zip(values) {
-        let numbers = values.iter().map(|&value| number(value, 6));
-        table.row(std::iter::once(row.to_string()).chain(numbers).collect());
+        let numbers = columns.iter().zip(values).map(|(column, &value)| {
+            let per_column = value / units::value(1.0, column.1);
+            number(units::value(per_column, row.1), 6)
+        });
+        table.row(std::iter::once(heading(row)).chain(numbers).collect());
     }
     table.text()
 }

@@ -12,6 +12,7 @@ use crate::failure::Failure;
 use crate::interruption::keep;
 use crate::table::{Table, number, or_dash};
 use crate::terminal::prose;
+use crate::units;
 use crate::verbs::fit::{self, Choices, Fitted};
 
 /// A standard error below this share of the value counts as well determined.
@@ -85,7 +86,7 @@ fn nothing_in(folder: &Path, found: &str) -> InputError {
 }
 
 fn compare(of: &Fitted, truth: &Truth, within: f64) -> (String, bool) {
-    let mut table = Table::new(["parameter", "truth", "value", "error_%", "stderr_%", "verdict"]);
+    let mut table = Table::new(["parameter", "unit", "truth", "value", "error_%", "stderr_%", "verdict"]);
     let mut well = true;
     for parameter in of.fit.parameters.iter().filter(|parameter| parameter.fitted) {
         let Some((_, true_value)) = truth.parameters.iter().find(|(name, _)| *name == parameter.name) else {
@@ -95,9 +96,11 @@ fn compare(of: &Fitted, truth: &Truth, within: f64) -> (String, bool) {
         let verdict = verdict(parameter, error, within);
         well &= verdict != "off";
         let stderr = or_dash(parameter.relative_stderr.map(|part| 100.0 * part), 2);
+        let shown = |value| number(units::value(value, &parameter.unit), 5);
         let numbers = [
-            number(*true_value, 5),
-            number(parameter.value, 5),
+            units::name(&parameter.unit).into(),
+            shown(*true_value),
+            shown(parameter.value),
             format!("{error:.2}"),
             stderr,
         ];

@@ -119,6 +119,42 @@ fn a_measured_file_ends_at_the_limit_packed_or_not() {
 }
 
 #[test]
+fn packed_data_of_every_format_end_at_the_limit() {
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/packed"));
+    let inspected = |file: &str, limit: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_qcar"));
+        let ran = command.args(["inspect", file]).env("QCAR_MAX_MIB", limit);
+        let ran = ran.current_dir(folder).output().unwrap();
+        let text = |bytes| String::from_utf8(bytes).unwrap();
+        (ran.status.code(), text(ran.stdout) + &text(ran.stderr))
+    };
+    let cases = [
+        ("zeros.mf4", "byte 248", "a1 "),
+        ("zeros.mat", "byte 1306", "\nb "),
+        ("zeros_v73.mat", "channel `b`", "\nb "),
+        ("inline.xlsx", "xl/worksheets/sheet1.xml", "\na "),
+        ("shared.xlsx", "sheet `rig`, cell A37", "\na "),
+        ("zeros.csv.gz", "zeros.csv.gz: found", "\na "),
+    ];
+    for (file, place, channel) in cases {
+        let (status, said) = inspected(file, "1");
+        assert_eq!(status, Some(2), "{said}");
+        for fragment in [file, place, "set QCAR_MAX_MIB", "raise the limit"] {
+            assert!(said.contains(fragment), "expected `{fragment}` in\n{said}");
+        }
+        let (status, said) = inspected(file, "64");
+        assert!(status == Some(0) && said.contains(channel), "{file}: {said}");
+    }
+    // Variables of this version of HDF5 are passed over one by one.
+    let (_, said) = inspected("zeros_v110.mat", "1");
+    assert!(
+        said.contains("\na ") && said.contains("b at `b`: more data than a file of this size may give"),
+        "{said}"
+    );
+    assert!(inspected("zeros_v110.mat", "64").1.contains("\nb "));
+}
+
+#[test]
 fn pipes_and_devices_are_no_files() {
     let folder = tempfile::tempdir().unwrap();
     assert!(

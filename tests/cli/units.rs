@@ -79,6 +79,112 @@ fn gradients_are_shown_in_the_units_asked_for() {
     }
 }
 
+#[test]
+fn matrices_are_shown_in_the_units_asked_for() {
+    let of = |more: &[&str]| succeeds(&[&["matrices", "axle_a", "--params", CAMPAIGN], more].concat());
+    let json: Value = serde_json::from_str(&of(&["--format", "json"])).unwrap();
+    let text = of(&["--units", "mm,mm/s,g,kN"]);
+    let sizes = [
+        ("m", "mm", 1e3),
+        ("m/s", "mm/s", 1e3),
+        ("m/s^2", "g", 1.0 / 9.80665),
+        ("N", "kN", 1e-3),
+    ];
+    for (block, of_rows, of_columns) in [
+        ("A", "states", "states"),
+        ("B", "states", "inputs"),
+        ("D", "outputs", "inputs"),
+    ] {
+        let shown = rows(&text, &format!("{block} "));
+        let named = |place: usize, kind: &str, cell: &str| {
+            let own = &json[kind][place];
+            let name = own["variable"].as_str().or(own["name"].as_str()).unwrap();
+            let (_, unit, size) = sizes.iter().find(|(si, ..)| own["unit"] == *si).unwrap();
+            assert_eq!(cell, format!("{name} [{unit}]"));
+            *size
+        };
+        assert_eq!(shown.len(), 1 + json[block].as_array().unwrap().len(), "{text}");
+        for (at, row) in shown[1..].iter().enumerate() {
+            for (column, cell) in row[1..].iter().enumerate() {
+                let size = named(at, of_rows, &row[0]) / named(column, of_columns, &shown[0][1 + column]);
+                let own = json[block][at][column].as_f64().unwrap();
+                assert!(same(cell, own * size), "{block} {row:?} {own}");
+            }
+        }
+    }
+}
+
+#[test]
+fn true_values_are_shown_in_the_units_asked_for() {
+    let (si, own) = (
+        succeeds(&["score", CAMPAIGN]),
+        succeeds(&["score", CAMPAIGN, "--units", "engineering"]),
+    );
+    let (si, own) = (rows(&si, "parameter"), rows(&own, "parameter"));
+    assert!(si.len() > 5 && si.len() == own.len(), "{own:?}");
+    for (si, own) in si.iter().zip(&own).skip(1) {
+        let (unit, size) = size(&own[1]);
+        assert_eq!((&si[0], si[1].as_str()), (&own[0], unit));
+        for at in [2, 3] {
+            assert!(same(&own[at], si[at].parse::<f64>().unwrap() * size), "{own:?}");
+        }
+    }
+}
+
+#[test]
+fn channels_of_a_file_are_shown_in_the_units_asked_for() {
+    let file = "qcar-signals/tests/samples/mdf/plain_3groups.mf4";
+    let json: Value = serde_json::from_str(&succeeds(&["inspect", file, "--format", "json"])).unwrap();
+    let text = succeeds(&["inspect", file, "--units", "g,N,m"]);
+    let shown = rows(&text, "channel");
+    let expected = [
+        ("wheel_left_z", "g", 1.0 / 9.80665),
+        ("body_left_z", "g", 1.0),
+        ("damper_force", "N", 1e3),
+        ("spring_travel", "m", 1e-3),
+        ("damper_temperature", "°C", 1.0),
+    ];
+    for (at, (name, unit, size)) in expected.into_iter().enumerate() {
+        let (row, own) = (&shown[1 + at], &json["channels"][at]);
+        assert_eq!((row[0].as_str(), row[2].as_str()), (name, unit));
+        for (cell, key) in [(7, "min"), (8, "max"), (9, "rms")] {
+            assert!(same(&row[cell], own[key].as_f64().unwrap() * size), "{row:?}");
+        }
+    }
+    let workbook = succeeds(&[
+        "inspect",
+        "qcar-signals/tests/samples/table/vehicle_template.xlsx",
+        "--units",
+        "m,N/m",
+    ]);
+    let shown = rows(&workbook, "value");
+    assert!(
+        shown.iter().any(|row| row[..3] == ["wheelbase", "m", "2.65"]),
+        "{workbook}"
+    );
+    assert!(
+        shown.iter().any(|row| row[..3] == ["k_tire", "N/m", "225000"]),
+        "{workbook}"
+    );
+}
+
+#[test]
+fn the_speed_of_a_sweep_is_told_in_the_unit_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = |parent: &str| folder.path().join(parent).join("campaign");
+    let imported = |parent: &str, units: &str| {
+        let (file, out) = (format!("{CAMPAIGN}/rig/sweep_025.csv.gz"), out(parent));
+        fs::create_dir(out.parent().unwrap()).unwrap();
+        let out = out.to_str().unwrap();
+        succeeds(&["import", &file, "--out", out, "--model", "axle_a", "--units", units])
+    };
+    assert!(imported("si", "si").contains("30 Hz at 0.025 m/s"));
+    assert!(imported("own", "mm/s").contains("30 Hz at 25 mm/s"));
+    // What is written is the same.
+    let written = |parent: &str| fs::read_to_string(out(parent).join("campaign.toml")).unwrap();
+    assert_eq!(written("si"), written("own"));
+}
+
 /// All files of a folder that are tables.
 fn tables(folder: &Path) -> Vec<std::path::PathBuf> {
     let mut found = Vec::new();

@@ -4,7 +4,7 @@
 
 use std::borrow::Cow;
 
-use memchr::{memchr, memchr3};
+use memchr::{memchr, memchr2, memchr3};
 
 use crate::error::{Fault, Place, Read};
 
@@ -17,6 +17,24 @@ const MOST_CELLS: usize = 1 << 16;
 pub(super) struct Row<'a> {
     pub(super) line: u64,
     pub(super) cells: Vec<Cow<'a, str>>,
+}
+
+impl Row<'_> {
+    pub(super) fn is_empty(&self) -> bool {
+        self.cells.iter().all(|cell| cell.is_empty())
+    }
+
+    /// Refuses a row that has not the columns of its table; cells after them may be empty.
+    pub(super) fn check_width(&self, width: usize) -> Read<()> {
+        let after = self.cells.get(width..);
+        if after.is_some_and(|after| after.iter().all(|cell| cell.is_empty())) {
+            return Ok(());
+        }
+        let found = format!("{} columns", self.cells.len());
+        let remedy = "complete the row, or delete what is no part of the table";
+        let expected = format!("{width} columns as above");
+        Err(Fault::new(Place::Line(self.line), found, expected, remedy))
+    }
 }
 
 /// The rows from a byte of a text on. Empty lines are no rows; if spaces separate cells, several count as one.
@@ -35,6 +53,29 @@ impl<'a> Rows<'a> {
             line: 1,
             delimiter,
         }
+    }
+
+    pub(super) fn delimiter(&self) -> u8 {
+        self.delimiter
+    }
+
+    pub(super) fn bytes_left(&self) -> usize {
+        self.text.len() - self.at
+    }
+
+    /// Number and text of the next line that is not empty, without its end; it is not passed over. `None` at the end of
+    /// the text.
+    pub(super) fn line(&mut self) -> Option<(u64, &'a [u8])> {
+        while self.end_of_line() {}
+        let rest = &self.text.as_bytes()[self.at..];
+        let length = memchr2(b'\n', b'\r', rest).unwrap_or(rest.len());
+        (!rest.is_empty()).then_some((self.line, &rest[..length]))
+    }
+
+    /// Passes over the next `length` bytes, which end a line.
+    pub(super) fn skip(&mut self, length: usize) {
+        self.at += length;
+        self.end_of_line();
     }
 
     /// Replaces `row` by the next one; false at the end of the text.

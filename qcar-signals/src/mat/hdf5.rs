@@ -16,12 +16,15 @@ use std::collections::HashSet;
 use crate::bytes::{Bytes, Number, Order, field, text};
 use crate::error::{Fault, Read};
 use crate::find::Wanted;
+use crate::limit::Budget;
 
 use super::value::{Array, Fields, Value, Variable, is_read, of_fields};
 
 use messages::{Class, Header};
 
 pub(super) const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
+/// An address that is not there.
+const UNDEFINED: u64 = u64::MAX;
 /// Largest depth of nested groups.
 const DEEPEST: usize = 16;
 
@@ -40,6 +43,7 @@ pub(super) fn superblock(file: &Bytes) -> Option<u64> {
 pub(super) fn variables(whole: &Bytes, at: u64, wanted: &Wanted) -> Read<Vec<Variable>> {
     let file = whole.part(at, whole.len() - at, "HDF5")?;
     let version = file.u8(8, "the superblock")?;
+    check_end(whole, &file, version)?;
     if matches!(version, 2 | 3) {
         return latest::variables(whole, wanted);
     }
@@ -52,6 +56,7 @@ pub(super) fn variables(whole: &Bytes, at: u64, wanted: &Wanted) -> Read<Vec<Var
     let mut reader = Reader {
         file,
         visited: HashSet::new(),
+        budget: Budget::of_file(file.len()),
     };
     let header = Header::read(&file, root)?;
     let mut variables = Vec::new();
@@ -71,6 +76,25 @@ pub(super) fn variables(whole: &Bytes, at: u64, wanted: &Wanted) -> Read<Vec<Var
     Ok(variables)
 }
 
+/// Refuses a file that ends before the end that its superblock states; it counts from the beginning of the file.
+fn check_end(whole: &Bytes, file: &Bytes, version: u8) -> Read<()> {
+    let end = match version {
+        0 => file.u64(40, "the superblock")?,
+        1 => file.u64(44, "the superblock")?,
+        2 | 3 => file.u64(28, "the superblock")?,
+        _ => return Ok(()),
+    };
+    if end <= whole.len() || end == UNDEFINED {
+        return Ok(());
+    }
+    let found = format!("{} bytes", whole.len());
+    Err(Fault::cut_off(
+        file.place(0),
+        found,
+        format!("{end} bytes, as the superblock states"),
+    ))
+}
+
 fn too_new(file: &Bytes, at: u64, found: impl Into<String>) -> Box<Fault> {
     let remedy = "save the file with MATLAB (-v7 or -v7.3), or with the earliest version of HDF5 allowed";
     Fault::new(file.place(at), found, "HDF5 as MATLAB writes it", remedy)
@@ -80,6 +104,7 @@ struct Reader<'a> {
     file: Bytes<'a>,
     /// Positions of objects, nodes and data that were read; none is read twice.
     visited: HashSet<u64>,
+    budget: Budget,
 }
 
 impl<'a> Reader<'a> {

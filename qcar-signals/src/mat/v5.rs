@@ -11,6 +11,7 @@ use crate::bytes::{Bytes, Number, Order, field, text};
 use crate::content::Content;
 use crate::error::{Fault, Place, Read};
 use crate::find::Wanted;
+use crate::limit::Budget;
 
 use super::HEADER;
 use super::value::{Array, Fields, Value, Variable, is_read};
@@ -30,6 +31,7 @@ pub(super) fn variables(file: Bytes, wanted: &Wanted) -> Read<Vec<Variable>> {
         Order::Big
     };
     let file = file.in_order(order);
+    let budget = Budget::of_file(file.len());
     let mut variables: Vec<Variable> = Vec::new();
     let mut at = HEADER as u64;
     while at < file.len() {
@@ -46,7 +48,7 @@ pub(super) fn variables(file: Bytes, wanted: &Wanted) -> Read<Vec<Variable>> {
         let place = Place::Byte(at);
         let unpacked;
         let variable = if element.kind == PACKED {
-            unpacked = Content::of_bytes(unpack(&element, at)?);
+            unpacked = Content::of_bytes(unpack(&element, &place, &budget)?);
             self::element(&Bytes::unpacked(&unpacked, order, at), 0)?
         } else {
             element
@@ -61,16 +63,12 @@ pub(super) fn variables(file: Bytes, wanted: &Wanted) -> Read<Vec<Variable>> {
 }
 
 /// The content of a packed element.
-fn unpack(element: &Element, at: u64) -> Read<Vec<u8>> {
+fn unpack(element: &Element, place: &Place, budget: &Budget) -> Read<Vec<u8>> {
     let packed = element.data.all("packed data")?;
-    let mut unpacked = Vec::new();
-    match ZlibDecoder::new(&*packed).read_to_end(&mut unpacked) {
-        Ok(_) => Ok(unpacked),
-        Err(error) => {
-            let found = format!("packed data that end with: {error}");
-            Err(Fault::damaged(Place::Byte(at), found, "whole packed data"))
-        }
-    }
+    budget.unpack(ZlibDecoder::new(&*packed), place, |error| {
+        let found = format!("packed data that end with: {error}");
+        Fault::damaged(place.clone(), found, "whole packed data")
+    })
 }
 
 /// The name of a variable, from the beginning of its packed data.

@@ -2,6 +2,7 @@
 
 use crate::bytes::{Bytes, Order, text};
 use crate::error::{Fault, Place, Read};
+use crate::limit::Budget;
 
 /// Bytes before the links.
 const HEAD: u64 = 24;
@@ -11,6 +12,7 @@ const LONGEST_TEXT: u64 = 65_536;
 /// A file as blocks.
 pub(super) struct File<'a> {
     pub(super) bytes: Bytes<'a>,
+    pub(super) budget: Budget,
 }
 
 /// A block, whose size was checked against the file.

@@ -91,7 +91,11 @@ fn gather<'a>(file: &File<'a>, block: &Block<'a>, depth: usize, visited: &mut Vi
     visited.first_time(block.at)?;
     match &block.id {
         b"##DT" | b"##SD" => all.add(Part::Plain(block.data)),
-        b"##DZ" => all.add(Part::Packed(Packed::of(block)?)),
+        b"##DZ" => {
+            let packed = Packed::of(block)?;
+            file.budget.count(packed.length, &block.place())?;
+            all.add(Part::Packed(packed));
+        }
         b"##HL" if depth > 0 => gather(
             file,
             &file.block(block.link(0), "a list of data")?,

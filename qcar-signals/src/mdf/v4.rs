@@ -6,6 +6,7 @@ use crate::bytes::{Bytes, Order};
 use crate::content::Content;
 use crate::error::{Fault, Place, Read};
 use crate::find::Wanted;
+use crate::limit::Budget;
 use crate::signal::Recording;
 
 use super::block::{Block, File};
@@ -19,7 +20,10 @@ const HEADER: u64 = 64;
 
 /// Reads a file of version 4.
 pub(super) fn read(bytes: Bytes, version: &str, wanted: &Wanted) -> Read<Recording> {
-    let file = File { bytes };
+    let file = File {
+        bytes,
+        budget: Budget::of_file(bytes.len()),
+    };
     let mut recording = Recording::new(format!("MDF {version}"));
     let mut visited = Visited::default();
     let mut at = file.named(HEADER, b"##HD", "the header")?.link(0);

@@ -12,6 +12,7 @@ use super::guess::{Guess, quantity_of};
 use super::sensors::Sensors;
 use super::sweep::{SweepParameters, parts, swept};
 use crate::table::number;
+use crate::units;
 use crate::verbs::inspect::{Contents, Course};
 
 /// Significant digits of proposed values.
@@ -62,11 +63,11 @@ impl Proposed {
             .map_or_else(String::new, |part| format!(", {}", part.description()));
         match &self.kind {
             Kind::Sweep(own) => format!(
-                "a {} sweep from {} to {} Hz at {} m/s{when}",
+                "a {} sweep from {} to {} Hz at {}{when}",
                 if own.logarithmic { "logarithmic" } else { "linear" },
                 number(own.start, DIGITS),
                 number(own.end, DIGITS),
-                number(own.peak_velocity, DIGITS),
+                units::with_unit(&number(units::value(own.peak_velocity, "m/s"), DIGITS), "m/s"),
             ),
             Kind::Other => format!("no run{when}: the pad moves but does not sweep"),
             Kind::Cleat => "a run over a cleat: no pad, and one impact".into(),

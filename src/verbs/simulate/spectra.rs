@@ -93,7 +93,25 @@ fn shown(density: f64, si: &str) -> f64 {
 
 fn squared(si: &str) -> String {
     match units::name(si) {
-        product if product.contains(['/', ' ']) => format!("({product})^2/Hz"),
+        product if product.contains(['/', ' ', '^']) => format!("({product})^2/Hz"),
         plain => format!("{plain}^2/Hz"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::squared;
+
+    #[test]
+    fn units_of_densities_are_squares() {
+        let cases = [
+            ("N", "N^2/Hz"),
+            ("m/s^2", "(m/s^2)^2/Hz"),
+            ("N s", "(N s)^2/Hz"),
+            ("m^2", "(m^2)^2/Hz"),
+        ];
+        for (unit, expected) in cases {
+            assert_eq!(squared(unit), expected);
+        }
     }
 }

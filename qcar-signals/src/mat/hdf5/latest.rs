@@ -9,12 +9,10 @@ use hdf5_pure::{AttrValue, ChunkIndex, DType, Dataset, Error, File, FormatError,
 use crate::bytes::Bytes;
 use crate::error::{Fault, Place, Read};
 use crate::find::Wanted;
+use crate::limit::of_unpacked;
 
 use super::super::value::{Array, Fields, Value, Variable, is_read, of_fields};
 use super::DEEPEST;
-
-/// Largest ratio of unpacked to packed size.
-const LARGEST_RATIO: u64 = 1100;
 
 /// All variables of a file. What stands before its superblock is needed too, since addresses count from the start.
 pub(super) fn variables(file: &Bytes, wanted: &Wanted) -> Read<Vec<Variable>> {
@@ -25,7 +23,7 @@ pub(super) fn variables(file: &Bytes, wanted: &Wanted) -> Read<Vec<Variable>> {
     };
     // A damaged file reaches no unsafe code of the crate, but the crate may panic.
     let caught = catch_unwind(|| {
-        let left = Cell::new(LARGEST_RATIO.saturating_mul(bytes.len() as u64));
+        let left = Cell::new(of_unpacked(bytes.len() as u64));
         let root = File::from_bytes(bytes)?.root();
         Walk { left, wanted }.variables(&root)
     });
@@ -129,7 +127,9 @@ impl Walk<'_> {
         let sizes = dimensions.iter().copied();
         let promised = sizes.chain([dataset.element_size()?]).try_fold(1, u64::checked_mul);
         if !self.may_take(promised) {
-            return Ok(Value::Other("more elements than the file can hold"));
+            return Ok(Value::Other(
+                "more data than a file of this size may give; QCAR_MAX_MIB sets another limit",
+            ));
         }
         if attributes.contains_key("MATLAB_empty") {
             return Ok(Value::Numbers(Array::unread(vec![0])));

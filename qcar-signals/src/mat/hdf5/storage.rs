@@ -71,6 +71,7 @@ impl<'a> Reader<'a> {
         if promised > there {
             return Err(self.short(header, there));
         }
+        self.budget.count(promised, &self.file.place(*tree))?;
         for leaf in &leaves {
             self.first_time(leaf.child)?;
             let there = self.file.part(leaf.child, leaf.size.into(), "a chunk")?.len();
