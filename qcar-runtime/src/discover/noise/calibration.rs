@@ -25,7 +25,8 @@ pub enum Form {
     Offset,
 }
 
-/// Number of shelves of a calibration curve: about four in a decade, of which each takes one to rise.
+/// Number of shelves of a calibration curve, a choice: about four in each decade of a rig's band. A shelf rises over about
+/// one decade.
 pub const SHELVES: usize = 6;
 
 /// Accuracy class of the calibration curves of a campaign's sensors. Class 0 is that of the data sheets below; each further
