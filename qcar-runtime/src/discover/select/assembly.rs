@@ -235,39 +235,6 @@ impl<'a> Hypothesis<'a> {
         (nuisance, place.errors.iter().chain(initial_states).copied().collect())
     }
 
-    /// Fits from a place with sensors as accurate as their data sheets.
-    ///
-    /// # Errors
-    /// Fails if the model cannot predict the evidence.
-    pub fn fit_with_calibrated_sensors(
-        mut self,
-        mut from: Place,
-        evidence: &Evidence,
-        budget: (usize, usize),
-    ) -> Result<Refit, PredictError> {
-        self.nuisance.known = Known::Class;
-        from.accuracy = AccuracyClass::default();
-        self.fit(&from, evidence, budget)
-    }
-
-    /// Fits from a place with the sensor errors of another fit.
-    ///
-    /// # Errors
-    /// Fails if the model cannot predict the evidence.
-    pub fn fit_with_sensors_of(
-        mut self,
-        other: &Refit,
-        mut from: Place,
-        evidence: &Evidence,
-        budget: (usize, usize),
-    ) -> Result<Refit, PredictError> {
-        self.nuisance.known = Known::Errors;
-        from.accuracy = other.nuisance.accuracy;
-        let sensors = self.nuisance.of_calibration();
-        from.errors[..sensors].copy_from_slice(&other.coefficients[..sensors]);
-        self.fit(&from, evidence, budget)
-    }
-
     /// Number of coefficients of its sensor errors.
     pub fn sensor_errors(&self) -> usize {
         self.nuisance.len()
@@ -314,6 +281,47 @@ impl<'a> Hypothesis<'a> {
     /// # Errors
     /// Fails if the model cannot predict the evidence.
     pub fn fit(&self, from: &Place, evidence: &Evidence, budget: (usize, usize)) -> Result<Refit, PredictError> {
+        self.fit_knowing(Known::Nothing, from, evidence, budget)
+    }
+
+    /// Like [`Self::fit`], with sensors as accurate as their data sheets.
+    ///
+    /// # Errors
+    /// As [`Self::fit`].
+    pub fn fit_with_calibrated_sensors(
+        &self,
+        mut from: Place,
+        evidence: &Evidence,
+        budget: (usize, usize),
+    ) -> Result<Refit, PredictError> {
+        from.accuracy = AccuracyClass::default();
+        self.fit_knowing(Known::Class, &from, evidence, budget)
+    }
+
+    /// Like [`Self::fit`], with the sensor errors of another fit.
+    ///
+    /// # Errors
+    /// As [`Self::fit`].
+    pub fn fit_with_sensors_of(
+        &self,
+        other: &Refit,
+        mut from: Place,
+        evidence: &Evidence,
+        budget: (usize, usize),
+    ) -> Result<Refit, PredictError> {
+        let sensors = self.nuisance.of_calibration();
+        from.accuracy = other.nuisance.accuracy;
+        from.errors[..sensors].copy_from_slice(&other.coefficients[..sensors]);
+        self.fit_knowing(Known::Errors, &from, evidence, budget)
+    }
+
+    fn fit_knowing(
+        &self,
+        known: Known,
+        from: &Place,
+        evidence: &Evidence,
+        budget: (usize, usize),
+    ) -> Result<Refit, PredictError> {
         let free = self.free();
         let parameters = &self.model.about().parameters;
         let mut errors = from.errors.clone();
@@ -332,8 +340,11 @@ impl<'a> Hypothesis<'a> {
             centre: &self.values(&BTreeMap::new())?,
             discrepancy: from.discrepancy.carried_to(evidence, Role::Fit),
         };
-        let mut nuisance = self.nuisance.clone();
-        nuisance.accuracy = from.accuracy;
+        let nuisance = Nuisance {
+            accuracy: from.accuracy,
+            known,
+            ..self.nuisance.clone()
+        };
         fit(self.model, start, &free, evidence, nuisance, budget)
     }
 

@@ -1,5 +1,6 @@
 //! A set of effects with its fit: its probability, its names and its remaining residual.
 
+use std::borrow::Cow;
 use std::sync::{Arc, Mutex, OnceLock};
 
 use super::assembly::{Assembly, Placed};
@@ -63,28 +64,31 @@ impl Set {
 
     /// Explanation by this set with the sensor errors of another set, if that one needs better sensors. Without an effect,
     /// the sensors seem worse than they are, and then the effect would seem to explain too little.
-    pub fn with_sensors_of(&self, other: &Set, evidence: &Evidence) -> Explanation {
+    pub fn with_sensors_of(&self, other: &Set, evidence: &Evidence) -> Cow<'_, Explanation> {
         if self.accuracy() <= other.accuracy() {
-            return self.explanation.clone();
+            return Cow::Borrowed(&self.explanation);
         }
-        let refitted = || self.refitted_with_sensors(&other.explanation.refit, evidence);
         let key = other.log_posterior();
-        let mut known = self.with_sensors.lock().expect("no thread panics with the lock");
-        let place = known.iter().position(|(of, _)| *of == key).unwrap_or_else(|| {
-            known.push((key, refitted().unwrap_or_else(|| self.explanation.clone())));
-            known.len() - 1
+        let known = || self.with_sensors.lock().expect("no thread panics with the lock");
+        let there = known().iter().find(|(of, _)| *of == key).map(|(_, own)| own.clone());
+        let own = there.unwrap_or_else(|| {
+            let refitted = self.refitted_with_sensors(&other.explanation.refit, evidence);
+            let own = refitted.unwrap_or_else(|| self.explanation.clone());
+            known().push((key, own.clone()));
+            own
         });
-        known[place].1.clone()
+        Cow::Owned(own)
     }
 
     fn refitted_with_sensors(&self, other: &Refit, evidence: &Evidence) -> Option<Explanation> {
         let own = &self.explanation.refit;
-        let from = self.assembly.hypothesis().place(own);
+        let hypothesis = self.assembly.hypothesis();
         let steady = evidence.minus(&own.unsteady).with_step_limit();
         let fine = &Fidelity::of(&steady).fine;
-        let hypothesis = self.assembly.hypothesis();
-        let refit = hypothesis.fit_with_sensors_of(other, from, fine, AGAIN).ok()?;
-        finite_explanation(&self.assembly.hypothesis(), refit, evidence)
+        let refit = hypothesis
+            .fit_with_sensors_of(other, hypothesis.place(own), fine, AGAIN)
+            .ok()?;
+        finite_explanation(&hypothesis, refit, evidence)
     }
 
     /// A notice if the sensors are less accurate than their data sheets.

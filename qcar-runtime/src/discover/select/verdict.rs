@@ -57,7 +57,7 @@ pub fn conclude(sets: &[Set], evidence: &Evidence) -> (Discovery, usize) {
         nuisances: [base, best].map(|place| nuisances(&sets[place])),
         findings,
         alternatives,
-        before: before.with_sensors_of(&sets[best], evidence),
+        before: before.with_sensors_of(&sets[best], evidence).into_owned(),
         after,
         detection_limits: Vec::new(),
         learned: None,

@@ -8,8 +8,8 @@ use std::array;
 use crate::solver::matrix::{Lanes, Matrix};
 use crate::vectors::{Loops, widest};
 
-/// Below this an entry is negligible, if states are scaled such that it acts in both directions alike: a thousand million steps of
-/// it stay below the rounding of the states.
+/// Entries below this are left out, for states scaled such that an entry and its transpose are equal. Over 10⁹ steps their sum stays
+/// below the rounding of the states, 10⁻¹⁶.
 const NEGLIGIBLE: f64 = 1e-25;
 
 /// Columns of four rows, of which those of zeros are left out.
