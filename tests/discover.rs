@@ -304,7 +304,7 @@ fn what_is_known_of_an_effect_is_not_estimated() {
 fn a_faint_effect_is_found() {
     let folder = tempfile::tempdir().expect("a folder");
     let campaign = folder.path().join("campaign");
-    let truth = [("k_maxwell", 120e3), ("relaxation_frequency", 8.0)];
+    let truth = [("k_maxwell", 115e3), ("relaxation_frequency", 8.0)];
     let order = Order {
         cleats: false,
         noise: 0.06,
@@ -315,7 +315,7 @@ fn a_faint_effect_is_found() {
     let answer = discover(&campaign, None);
     for role in ["fit", "held_out"] {
         let before = answer["gap"][role]["before"].as_f64();
-        assert!(before.is_some_and(|gap| gap * gap < 2.0), "{role}: {before:?}");
+        assert!(before.is_some_and(|gap| gap < 1.2), "{role}: {before:?}");
     }
     assert_eq!(answer["verdict"], "found", "{answer}");
     assert_eq!(answer["effects"][0]["name"], "bushing_relaxation");
@@ -608,6 +608,28 @@ fn a_mass_is_found_from_the_start_values_where_the_base_fit_is_far_off() {
     assert_eq!(answer["effects"][0]["name"], "suspended_mass", "{answer}");
     assert_eq!(answer["effects"][0]["at"], "subframe", "{answer}");
     assert!(answer["gap"]["held_out"]["after"].as_f64() < Some(1.1), "{answer}");
+}
+
+/// Every sensor's gain changes by 4 % over the band, with the phase that belongs to it. With curves held to the 1 % of data sheets, a relaxing
+/// bushing was named with certainty.
+#[test]
+fn inaccurate_sensors_are_no_effect_and_a_notice_says_so() {
+    let answer = of_matrix(85, "hardware a3 Calibration alone seed 85");
+    assert_eq!(answer["verdict"], "none", "{answer}");
+    let notices = answer["notices"].to_string();
+    assert!(
+        notices.contains("the gains of the sensors seem to change by"),
+        "{notices}"
+    );
+}
+
+/// The curves of such sensors can imitate much of a drag on the body. It is named, since it is judged with the sensors that it needs.
+#[test]
+fn an_effect_that_inaccurate_sensors_could_imitate_is_found() {
+    let answer = of_matrix(82, "hardware drag_to_ground@body seed 82");
+    assert_eq!(answer["verdict"], "found", "{answer}");
+    assert_eq!(answer["effects"][0]["name"], "drag_to_ground", "{answer}");
+    assert_eq!(answer["effects"][0]["at"], "body", "{answer}");
 }
 
 /// On hardware with flaws, a learned law has a larger evidence than a relaxing bushing and a hydraulic mount, which explain as much of

@@ -19,9 +19,7 @@ impl Posterior<'_> {
         let Some(shelves) = Marginal::of(self, outcome) else {
             return;
         };
-        let cost = |class: AccuracyClass| shelves.cost(class.shelf()) + class.cost();
-        let most_probable = AccuracyClass::all().min_by(|a, b| cost(*a).total_cmp(&cost(*b)));
-        self.nuisance.accuracy = most_probable.unwrap_or_default();
+        self.nuisance.accuracy = shelves.most_probable_class();
         for place in self.nuisance.shelves() {
             self.sigmas[place] = self.nuisance.accuracy.shelf();
         }
@@ -66,6 +64,13 @@ impl Marginal {
         })
     }
 
+    fn most_probable_class(&self) -> AccuracyClass {
+        let cost = |class: &AccuracyClass| self.cost(class.shelf()) + class.cost();
+        AccuracyClass::all()
+            .min_by(|a, b| cost(a).total_cmp(&cost(b)))
+            .unwrap_or_default()
+    }
+
     /// Negative log evidence for a standard deviation of the shelves, up to a constant.
     fn cost(&self, sigma: f64) -> f64 {
         let of = |(information, slope): (&f64, &f64)| {
@@ -73,5 +78,34 @@ impl Marginal {
             (narrowed.ln() - (slope * sigma).powi(2) / narrowed) / 2.0
         };
         self.information.iter().zip(&self.slope).map(of).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DVector;
+
+    use super::{AccuracyClass, Marginal};
+
+    /// Shelves of this size with alternating signs, each known to `error`.
+    fn shelves(size: f64, error: f64) -> Marginal {
+        let information = DVector::from_element(48, error.powi(-2));
+        let slope = DVector::from_fn(48, |k, _| if k % 2 == 0 { size } else { -size } * error.powi(-2));
+        Marginal { information, slope }
+    }
+
+    /// The most probable variance of values that are known is their mean square.
+    #[test]
+    fn the_class_of_known_shelves_is_their_size() {
+        for class in AccuracyClass::all() {
+            let found = shelves(class.shelf(), 1e-5).most_probable_class();
+            assert_eq!(found, class);
+        }
+    }
+
+    /// What noise makes of shelves that nothing determines is no sign of inaccurate sensors.
+    #[test]
+    fn shelves_within_their_noise_leave_the_class_of_the_data_sheets() {
+        assert_eq!(shelves(0.05, 0.05).most_probable_class(), AccuracyClass::default());
     }
 }
