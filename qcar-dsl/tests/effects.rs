@@ -388,6 +388,25 @@ fn the_body_stays_that_of_its_wheel_beside_the_other_axle() {
     assert_eq!(effect("drag_to_ground").places(&with_other), ["body", "wheel"]);
 }
 
+/// What another effect takes from the body leaves less of it than the inertance of the pitch was computed from.
+#[test]
+fn a_part_of_a_pitching_body_can_be_a_mass_of_its_own() {
+    let value = |name: &str| match name {
+        "m_corner" => Some(481.0),
+        "m_half_vehicle" => Some(955.9),
+        "m_wheel_other_axle" => Some(46.5),
+        "m_wheel" => Some(55.3),
+        "m_tm" => Some(5.1),
+        _ => None,
+    };
+    let pitching = effect("apparent_mass").apply(&model("axle_c"), "body", &value);
+    let pitching = pitching.unwrap().model;
+    for name in ["body_bending", "suspended_mass", "subframe"] {
+        let both = effect(name).apply(&pitching, "body", &value);
+        both.unwrap_or_else(|report| panic!("{name}: {report:?}"));
+    }
+}
+
 /// Whether a law is linear is decided at pseudo-random motions, of which all may be within its linear travel.
 #[test]
 fn a_dead_zone_is_seen_beside_any_effect() {

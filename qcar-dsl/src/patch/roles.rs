@@ -300,7 +300,7 @@ fn own_point(base: &ModelTree, direction: &str, name: &Dotted) -> Option<String>
 fn carries(link: &Link) -> bool {
     link.body
         .iter()
-        .any(|statement| !matches!(statement, LawStatement::Inerter(_)))
+        .any(|statement| !matches!(statement, LawStatement::Inerter(_) | LawStatement::Active))
 }
 
 fn is_tyre(direction: &Direction, link: &Link) -> bool {

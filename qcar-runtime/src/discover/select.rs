@@ -220,8 +220,9 @@ impl Discovery {
 /// contain the best single effect.
 const BEAM: usize = 2;
 
-/// The set to extend next; `None` if no extension is worth trying. This is the most probable set; if something is still
-/// missing after that, it is the next one-effect set of the beam. A third effect is tried only if the first two explain
+/// The set to extend next; `None` if no extension is worth trying. This is the most probable set; then the base model with the
+/// nuisance effects that the data show, if the most probable set leaves a significant part; if something is still missing
+/// after that, it is the next one-effect set of the beam. A third effect is tried only if the first two explain
 /// most of the excess residual; if they do not, the catalogue has no answer.
 fn next(sets: &[Set], evidence: &Evidence) -> Option<usize> {
     let best = best(sets);
@@ -232,7 +233,11 @@ fn next(sets: &[Set], evidence: &Evidence) -> Option<usize> {
     let first = is_open
         .then_some(best)
         .filter(|_| !needs_no_further_effect(sets, best, evidence));
-    first.or_else(|| second(sets).filter(|_| is_missing(&sets[best], evidence)))
+    let base =
+        || Some(best_base(sets)).filter(|&base| !sets[base].extended && explained() < evidence.numbers.certain());
+    first
+        .or_else(base)
+        .or_else(|| second(sets).filter(|_| is_missing(&sets[best], evidence)))
 }
 
 /// The next one-effect set to extend; `None` if the beam is full or no such set is left.

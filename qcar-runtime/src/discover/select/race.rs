@@ -155,6 +155,8 @@ pub fn race(
 /// Candidates for the first round, among the effects that gain at a place in some form: the ones with the largest gain,
 /// the best of each place, and the best of each form of each effect. The screening shows that something is missing, the
 /// fits show what: the parameters of a model without an effect may have to change much before the effect gains much.
+/// Nuisance effects enter at every place, without a gain: every real axle has them, and what they explain must not be given to
+/// another effect.
 pub fn entrants<'p>(candidates: &[Candidate], screened: &'p [Screened]) -> Vec<&'p Screened> {
     let effect = |entry: &Screened| {
         let own = &candidates[entry.candidate];
@@ -168,7 +170,7 @@ pub fn entrants<'p>(candidates: &[Candidate], screened: &'p [Screened]) -> Vec<&
         let is_first_there = places.insert(own.at.as_str());
         let is_first_of_its_form = forms.insert((own.effect.as_str(), own.form.as_deref()));
         let is_chosen = *rank < ENTRANTS || is_first_there || is_first_of_its_form;
-        is_chosen && gaining.contains(&effect(entry))
+        own.nuisance || is_chosen && gaining.contains(&effect(entry))
     };
     let entering = screened.iter().enumerate().filter(enters);
     entering.map(|(_, entry)| entry).collect()
@@ -194,7 +196,8 @@ fn run<'a>(mut runner: Runner<'a>, evidence: &Evidence, round: &Round, is_cut: b
     Some(runner)
 }
 
-/// The runners that go on, best first, and the dropped candidates.
+/// The runners that go on, best first, and the dropped candidates. A nuisance effect goes on beside them, since it may be needed
+/// for the right effect to become the best.
 fn best<'a>(
     mut field: Vec<Runner<'a>>,
     candidates: &[Candidate],
@@ -216,16 +219,19 @@ fn best<'a>(
         let improves = behind <= runner.gained().max(NOT_SEPARATED);
         let is_best_there = !late && !places.contains(&name.1);
         let is_of_beam = names.len() < BEAM;
-        let wanted = improves && (known || names.len() < round.kept)
+        let wanted = own.nuisance
+            || improves && (known || names.len() < round.kept)
             || is_best_there && names.len() < 2 * round.kept
             || !known && is_of_beam;
         let count = starts.entry(runner.candidate).or_default();
         if wanted && *count < round.starts {
             *count += 1;
-            if !known {
-                names.push(name);
+            if !own.nuisance {
+                places.push(name.1);
+                if !known {
+                    names.push(name);
+                }
             }
-            places.push(name.1);
             stay.push(runner);
         } else if *count == 0 {
             dropped.push(Dropped {
@@ -268,15 +274,19 @@ mod tests {
         }
     }
 
-    /// Friction has a small gain and ranks behind all direct entrants; one of its forms has none, and neither has the
-    /// stop.
+    /// Friction has a small gain and ranks behind all direct entrants; one of its forms has none, and neither have the
+    /// stop and the nuisance.
     #[test]
-    fn every_form_of_an_effect_is_fitted_at_its_best_place_and_every_place_has_one() {
+    fn every_form_of_an_effect_is_fitted_at_its_best_place_and_every_place_and_nuisance_has_one() {
         let law = |k: usize| (candidate(&format!("law {k}"), "damper"), 100.0 - k as f64);
         let [in_damper, with_memory] = ["in_damper", "with_memory"].map(|form| Candidate {
             form: Some(form.into()),
             ..candidate("friction", "damper")
         });
+        let nuisance = Candidate {
+            nuisance: true,
+            ..candidate("bending", "body")
+        };
         let later = [
             (candidate("friction", "damper"), 5.0),
             (candidate("law 0", "spring"), 4.0),
@@ -284,6 +294,7 @@ mod tests {
             (in_damper, 2.0),
             (with_memory, -1.0),
             (candidate("stop", "top_mount"), 0.0),
+            (nuisance, 0.0),
         ];
         let all = (0..ENTRANTS).map(law).chain(later);
         let (candidates, gains): (Vec<Candidate>, Vec<f64>) = all.unzip();
@@ -295,6 +306,6 @@ mod tests {
         let screened: Vec<Screened> = gains.into_iter().enumerate().map(entry).collect();
         let later = entrants(&candidates, &screened).into_iter().skip(ENTRANTS);
         let later: Vec<usize> = later.map(|own| own.candidate - ENTRANTS).collect();
-        assert_eq!(later, [0, 1, 3, 4]);
+        assert_eq!(later, [0, 1, 3, 4, 6]);
     }
 }
