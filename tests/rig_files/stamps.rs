@@ -8,8 +8,11 @@ use tempfile::TempDir;
 use crate::writers::{Channel, Group, mat5, mat73, mdf3, mdf4, tables, tdms};
 use crate::{channel, folder, history, open};
 
-/// Ending and writer of each such format.
-const FORMATS: [(&str, fn(&Group) -> Vec<u8>); 7] = [
+/// Ending and writer of a format.
+type Format = (&'static str, fn(&Group) -> Vec<u8>);
+
+/// The formats that store times.
+const FORMATS: [Format; 7] = [
     ("mf4", |group| mdf4::file(std::slice::from_ref(group))),
     ("mdf", mdf3::file),
     ("mat", mat5::file),
@@ -40,7 +43,7 @@ fn group(stamps: impl Iterator<Item = f64>) -> Group {
 }
 
 /// A campaign with this file as its only run. MAT knows no units, so the campaign states them.
-fn campaign((ending, file): (&str, fn(&Group) -> Vec<u8>), group: &Group) -> TempDir {
+fn campaign((ending, file): Format, group: &Group) -> TempDir {
     let sensor = |location: &str, source: &str| channel(location, &format!("source = \"{source}\"\nunit = \"m/s^2\""));
     let name = format!("bus.{ending}");
     let sections = sensor("pad", "Pad_FL") + &sensor("body", "Body_FL") + &history(&name, "");
