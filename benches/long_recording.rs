@@ -101,10 +101,7 @@ fn campaign(file: &str) -> String {
 fn group(samples: usize) -> Group {
     let wave = |channel: usize| (0..samples).map(|at| value(at, channel)).collect();
     let channel = |at: usize| Channel::new(&format!("channel_{at}"), "m/s^2", wave(at));
-    Group {
-        rate: RATE,
-        channels: (0..CHANNELS).map(channel).collect(),
-    }
+    Group::at(RATE, (0..CHANNELS).map(channel).collect())
 }
 
 /// A sample of a sawtooth, different in each channel.

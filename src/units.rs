@@ -4,6 +4,7 @@ use std::str::FromStr;
 use std::sync::OnceLock;
 
 use qcar_runtime::campaign::Declared;
+use qcar_runtime::shown;
 use serde_json::json;
 
 /// Units of the choice `engineering`: one for each kind that engineers of ride comfort do not show in SI.
@@ -97,9 +98,13 @@ impl Units {
 /// Choice of the user.
 static CHOSEN: OnceLock<Units> = OnceLock::new();
 
-/// Sets the units of all results. The first choice of a process holds.
+/// Sets the units of all results and messages. The first choice of a process holds.
 pub fn choose(units: Units) {
     let _ = CHOSEN.set(units);
+    shown::convert_by(|value, si| {
+        let own = CHOSEN.get()?.of_kind(si)?;
+        Some((own.declared.shown(value), &own.name))
+    });
 }
 
 /// The shown unit of a value in `si`: SI without a choice.

@@ -17,6 +17,7 @@ pub(crate) use rig::of_unit_force;
 pub use rig::{Slope, gradient, parameter_for, value_for};
 
 use crate::campaign::DynamicCurve;
+use crate::shown::shown;
 
 /// Gradients of a slow cycle.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -71,7 +72,9 @@ pub enum KcError {
     #[error("travel in one direction only")]
     OneWay,
     #[error(
-        "a force that does not increase with the displacement: slope {slope:.3e} N/m, standard error {error:.1e} N/m"
+        "a force that does not increase with the displacement: slope {:.3e}, standard error {:.1e}",
+        shown(*.slope, "N/m"),
+        shown(*.error, "N/m")
     )]
     NoSlope { slope: f64, error: f64 },
 }

@@ -14,6 +14,8 @@ pub mod matrices;
 mod vectors;
 // Support for generated models.
 pub mod generated;
+// Quantities in messages.
+pub mod shown;
 // Errors of every part.
 pub mod error;
 // Suggestions for misspelt names.

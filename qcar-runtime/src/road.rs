@@ -4,6 +4,8 @@
 //! integrals over the ground between two points, which are differences of two prefix integrals. So a query costs the
 //! same for a plank and for a measured road of a million samples.
 
+use crate::shown::shown;
+
 mod bounds;
 mod integrals;
 // What a road is made from: samples, shapes, noise.
@@ -50,18 +52,20 @@ pub enum RoadError {
         value: f64,
     },
     #[error(
-        "x falls from {before} m to {x} m at sample {sample}; x must never decrease (two points at one x are a step)"
+        "x falls from {} to {} at sample {sample}; x must never decrease (two points at one x are a step)",
+        shown(*.before, "m"),
+        shown(*.x, "m")
     )]
     NotMonotonic { sample: usize, before: f64, x: f64 },
-    #[error("all points of the road lie at x = {x} m; expected a road with a length")]
+    #[error("all points of the road lie at x = {}; expected a road with a length", shown(*.x, "m"))]
     NoLength { x: f64 },
-    #[error("slope {slope} at x = {x} m contradicts the heights there, which rise by {rise}")]
+    #[error("slope {slope} at x = {} contradicts the heights there, which rise by {rise}", shown(*.x, "m"))]
     SlopeContradictsHeight { x: f64, slope: f64, rise: f64 },
     #[error(
         "the road is rougher than its sampling: leaving out a sample changes it by {share:.2} of its own standard deviation, more than {limit}"
     )]
     Rough { share: f64, limit: f64 },
-    #[error("the road ends at x = {end} m, but the run reaches x = {needed} m")]
+    #[error("the road ends at x = {}, but the run reaches x = {}", shown(*.end, "m"), shown(*.needed, "m"))]
     TooShort { end: f64, needed: f64 },
     #[error("{name} must be {expected}, found {value}")]
     Shape {

@@ -36,6 +36,7 @@ pub use circle::{segment_area, segment_deflection};
 use std::cell::Cell;
 
 use crate::road::Road;
+use crate::shown::shown;
 
 /// A tyre's geometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,9 +104,13 @@ pub struct Change {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says it")]
 pub enum TyreError {
-    #[error("the tyre's radius is {radius} m; expected a positive number")]
+    #[error("the tyre's radius is {}; expected a positive number", shown(*.radius, "m"))]
     Radius { radius: f64 },
-    #[error("the static deflection is {deflection} m; expected more than 0 and less than the radius, {radius} m")]
+    #[error(
+        "the static deflection is {}; expected more than 0 and less than the radius, {}",
+        shown(*.deflection, "m"),
+        shown(*.radius, "m")
+    )]
     StaticDeflection { deflection: f64, radius: f64 },
 }
 

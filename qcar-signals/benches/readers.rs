@@ -29,10 +29,7 @@ fn group(width: usize) -> Group {
             .collect()
     };
     let channel = |at: usize| Channel::new(&format!("channel_{at}"), "m/s^2", wave(at));
-    Group {
-        rate: 1000.0,
-        channels: (0..CHANNELS).map(channel).collect(),
-    }
+    Group::at(1000.0, (0..CHANNELS).map(channel).collect())
 }
 
 const SHORT: usize = 2;

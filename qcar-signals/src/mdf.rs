@@ -224,7 +224,11 @@ fn add_group(
         Ok(time) => add_signals(recording, group, channels.into_iter().zip(samples), &time),
         Err((place, why)) => {
             for channel in channels.iter().filter(|channel| channel.role == Role::Values) {
-                recording.pass_over(&channel.name, place.clone(), format!("its times: {why}"));
+                recording.pass_over(
+                    &channel.name,
+                    place.clone(),
+                    format!("its times must never fall, but one is {why}"),
+                );
             }
         }
     }

@@ -306,7 +306,12 @@ fn times_of_groups(channels: &[Channel<'_>]) -> Read<HashMap<String, TimeBase>> 
         let mut own = samples.clone();
         in_seconds(&mut own, factor);
         let base = TimeBase::from_times(own).map_err(|(at, found)| {
-            Fault::damaged(object.place.clone(), format!("{found} in sample {}", at + 1), "times").of(name)
+            Fault::damaged(
+                object.place.clone(),
+                format!("{found} in sample {}", at + 1),
+                "times that never fall",
+            )
+            .of(name)
         })?;
         times.insert(group.clone(), base);
     }

@@ -6,7 +6,7 @@ use std::path::Path;
 use qcar_signals::read::read;
 use serde_json::Value;
 
-use crate::common::{copy, qcar, qcar_in, repository, run_line, succeeds};
+use crate::common::{copy, qcar, qcar_in, refused, repository, run_line, succeeds};
 use crate::document::{blocks, commands};
 
 const CAMPAIGN: &str = "models/campaigns/axle_a_rig";
@@ -183,6 +183,27 @@ fn the_speed_of_a_sweep_is_told_in_the_unit_asked_for() {
     // What is written is the same.
     let written = |parent: &str| fs::read_to_string(out(parent).join("campaign.toml")).unwrap();
     assert_eq!(written("si"), written("own"));
+}
+
+#[test]
+fn messages_about_roads_and_tyres_are_in_the_units_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let own = folder.path().join("own");
+    copy(Path::new(CAMPAIGN), &own);
+    let text = fs::read_to_string(own.join("campaign.toml")).unwrap();
+    let deep = text.replace("static_tire_def = 0.02361", "static_tire_def = 0.4");
+    assert_ne!(text, deep);
+    fs::write(own.join("campaign.toml"), deep).unwrap();
+    let simulate = ["simulate", own.to_str().unwrap(), "--units"];
+    let tyre = |units| qcar(&[&simulate[..], &[units]].concat());
+    refused(&tyre("si"), &["deflection is 0.4 m", "the radius, 0.35 m"]);
+    refused(&tyre("mm"), &["deflection is 400 mm", "the radius, 350 mm"]);
+    let profile = folder.path().join("back.csv");
+    fs::write(&profile, "x [m],z [m]\n0,0\n1,0.01\n0.5,0\n2,0\n").unwrap();
+    let road = format!("{}@30km/h", profile.display());
+    let road = |units| qcar(&["simulate", CAMPAIGN, "--road", &road, "--units", units]);
+    refused(&road("si"), &["found 0.5 m after 1 m at sample 3"]);
+    refused(&road("engineering"), &["found 500 mm after 1000 mm at sample 3"]);
 }
 
 /// All files of a folder that are tables.

@@ -19,6 +19,9 @@ const SAMPLES: usize = 251;
 /// How far trajectories may be from ours, in parts of the largest value of each.
 const TOLERANCE: f64 = 1e-6;
 
+/// A campaign of `axle_c`.
+pub const STUDY: &str = "models/campaigns/axle_c_study";
+
 /// FMPy brings the headers of the FMI project, which list what a library must have.
 #[test]
 fn libraries_have_every_function_of_the_headers_of_the_standard() {
@@ -114,21 +117,17 @@ axle block {
 #[test]
 fn an_axle_with_friction_moves_in_fmpy_as_here() {
     let folder = tempfile::tempdir().unwrap();
-    let patched = folder.path().join("friction.axle");
-    let patched = patched.to_str().unwrap();
-    let params = "models/campaigns/axle_c_study";
-    qcar(&[
-        "patch",
-        "axle_c",
-        "coulomb_friction",
-        "--at",
-        "damper",
-        "--params",
-        params,
-        "--out",
-        patched,
-    ]);
-    compare(patched, Some(params), None);
+    let patched = with_friction(folder.path());
+    compare(patched.to_str().unwrap(), Some(STUDY), None);
+}
+
+/// `axle_c` with dry friction in its damper, as a study finds it.
+pub fn with_friction(folder: &Path) -> PathBuf {
+    let patched = folder.join("friction.axle");
+    let out = patched.to_str().unwrap();
+    let effect = ["coulomb_friction", "--at", "damper", "--params", STUDY, "--out", out];
+    qcar(&[&["patch", "axle_c"], &effect[..]].concat());
+    patched
 }
 
 #[test]
@@ -225,7 +224,7 @@ fn compare_version(python: &Path, model: &str, params: Option<&str>, changed: Op
 }
 
 /// A model behind the seam of the workbench.
-struct Subject {
+pub struct Subject {
     model: Loaded,
     /// What parameters have in the unit at first, and what they are given.
     exported: Values,
@@ -234,7 +233,7 @@ struct Subject {
 }
 
 impl Subject {
-    fn new(model: &str, params: Option<&str>, changed: Option<(&str, f64)>) -> Subject {
+    pub fn new(model: &str, params: Option<&str>, changed: Option<(&str, f64)>) -> Subject {
         let model = catalogue::load(model).unwrap();
         let params = params.map(PathBuf::from);
         let mut values = parameters::resolve(model.about(), params.as_deref(), &[]).unwrap();
@@ -283,7 +282,7 @@ impl Subject {
         inputs.map(|input| row(&input.name)).collect()
     }
 
-    fn input_file(&self) -> String {
+    pub fn input_file(&self) -> String {
         let names: Vec<&str> = self.model.about().inputs.iter().map(|input| &*input.name).collect();
         let samples = self.samples();
         let line = |k: usize| {
@@ -298,7 +297,7 @@ impl Subject {
     }
 
     /// The outputs at the samples, by the runtime's integrator at a tolerance that is tighter by two orders.
-    fn ride(&self, between: Between) -> Vec<Vec<f64>> {
+    pub fn ride(&self, between: Between) -> Vec<Vec<f64>> {
         let about = self.model.about();
         let mut system = Driven {
             subject: self,
@@ -332,7 +331,7 @@ impl Subject {
         outputs
     }
 
-    fn check_ride(&self, own: &[Vec<f64>], other: &Value, kind: &str) {
+    pub fn check_ride(&self, own: &[Vec<f64>], other: &Value, kind: &str) {
         for (output, own) in self.model.about().outputs.iter().zip(own) {
             let other: Vec<f64> = serde_json::from_value(other[&*output.name].clone()).unwrap();
             let peak = own.iter().fold(0.0f64, |peak, value| peak.max(value.abs()));
@@ -410,7 +409,7 @@ impl Subject {
 
 /// What inputs do between their samples.
 #[derive(Clone, Copy, PartialEq)]
-enum Between {
+pub enum Between {
     Straight,
     /// They stay, and outputs at a sample are of the inputs before it.
     Before,

@@ -1,8 +1,9 @@
-//! Exported models against other programs: FMPy, the FMU Manipulation Toolbox, SciPy, GNU Octave, Node; and tables against pyarrow.
+//! Exported models against other programs: FMPy and four other importers of FMUs, the FMU Manipulation Toolbox, SciPy, GNU Octave, Node; and tables against pyarrow.
 
 mod conformity;
 mod fmu;
 mod histories;
+mod importers;
 mod javascript;
 mod matlab;
 mod modelica;

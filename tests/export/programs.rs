@@ -18,18 +18,22 @@ pub fn qcar(arguments: &[&str]) -> String {
 
 /// A Python that has a package: that of `.ci/run`, or the system's; else a word, so that nobody takes this for a check.
 pub fn python_with(package: &str, unchecked: &str) -> Option<PathBuf> {
+    python_that(&format!("import {package}"), package, unchecked)
+}
+
+/// A Python that runs a statement, for which it needs packages.
+pub fn python_that(runs: &str, packages: &str, unchecked: &str) -> Option<PathBuf> {
     let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/python/bin/python");
-    let imports = |python: &PathBuf| {
-        let import = format!("import {package}");
+    let can = |python: &PathBuf| {
         Command::new(python)
-            .args(["-c", &import])
+            .args(["-c", runs])
             .output()
             .is_ok_and(|ran| ran.status.success())
     };
-    let found = [own, "python3".into()].into_iter().find(imports);
+    let found = [own, "python3".into()].into_iter().find(can);
     if found.is_none() {
         say(&format!(
-            "not checked: {unchecked}, since Python or its package {package} is absent (pip install {package})"
+            "not checked: {unchecked}, since Python or one of its packages is absent (pip install {packages})"
         ));
     }
     found

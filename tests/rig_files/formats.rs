@@ -49,10 +49,7 @@ pub fn sweeps() -> Vec<Group> {
                 let samples = history.signal(name).unwrap().iter().map(|value| sign * value / G);
                 Channel::new(source, "g", samples.collect())
             };
-            Group {
-                rate: history.sample_rate,
-                channels: NAMES.iter().map(channel).collect(),
-            }
+            Group::at(history.sample_rate, NAMES.iter().map(channel).collect())
         })
         .collect()
 }
@@ -185,10 +182,7 @@ fn rpc_gives_the_same_fit_within_its_rounding() {
 /// A group with other samples in each channel.
 fn with_samples(group: &Group, samples: impl Fn(&Channel) -> Vec<f64>) -> Group {
     let channel = |own: &Channel| Channel::new(&own.name, &own.unit, samples(own));
-    Group {
-        rate: group.rate,
-        channels: group.channels.iter().map(channel).collect(),
-    }
+    Group::at(group.rate, group.channels.iter().map(channel).collect())
 }
 
 /// Checks that RPC III gives the same fit as MAT, which holds the samples in full as RPC III rounds them.

@@ -71,10 +71,7 @@ fn sweeps_of_one_recording_become_runs() {
         let samples = samples.chain(std::iter::repeat_n(0.0, rest)).chain(knocks.clone());
         Channel::new(&all[0].channels[at].name, "g", samples.collect())
     };
-    let long = Group {
-        rate,
-        channels: (0..count).map(joined).collect(),
-    };
+    let long = Group::at(rate, (0..count).map(joined).collect());
     fs::write(folder.path().join("long.mf4"), mdf4::file(&[long])).unwrap();
     let (status, said) = qcar(folder.path(), "import long.mf4 --out rig --model axle_a");
     assert_eq!(status, 0, "{said}");

@@ -12,6 +12,8 @@ mod import;
 mod memory;
 // What is refused, and how.
 mod refused;
+// Times that are stored and uneven.
+mod stamps;
 // Parts of a recording, and channels of several rates.
 mod windows;
 // What is written and read again.

@@ -19,10 +19,7 @@ fn group(samples: usize) -> Group {
             .collect()
     };
     let named = |at: usize| Channel::new(&format!("channel_{at}"), "m/s^2", wave(at));
-    Group {
-        rate: 1000.0,
-        channels: (0..16).map(named).collect(),
-    }
+    Group::at(1000.0, (0..16).map(named).collect())
 }
 
 /// The share of a file that is held, at most, while a campaign of two sensors and two windows is opened; `unit` of the sensors where

@@ -188,9 +188,11 @@ fn samples_that_were_lost_inside_the_window_are_refused() {
 
 #[test]
 fn a_channel_of_another_length_is_named() {
-    let group = |rate: f64, name: &str, count: usize| Group {
-        rate,
-        channels: vec![Channel::new(name, "g", (0..count).map(|k| (k as f64).sin()).collect())],
+    let group = |rate: f64, name: &str, count: usize| {
+        Group::at(
+            rate,
+            vec![Channel::new(name, "g", (0..count).map(|k| (k as f64).sin()).collect())],
+        )
     };
     let file = mdf4::file(&[group(100.0, "FL_Pad_Acc_Z", 1000), group(100.0, "FL_Body_Acc_Z", 700)]);
     let sensors = pad() + &channel("body", "source = \"FL_Body_Acc_Z\"");
@@ -210,10 +212,7 @@ fn a_channel_of_another_length_is_named() {
 
 #[test]
 fn channels_without_samples_are_named() {
-    let group = |name: &str, count: usize| Group {
-        rate: 100.0,
-        channels: vec![Channel::new(name, "g", vec![0.5; count])],
-    };
+    let group = |name: &str, count: usize| Group::at(100.0, vec![Channel::new(name, "g", vec![0.5; count])]);
     for (count, said) in [(0, "0 values in the first 1 s"), (1, "1 values in the first 1 s")] {
         let file = mdf4::file(&[group("FL_Pad_Acc_Z", 1000), group("FL_Body_Acc_Z", count)]);
         let keys = "source = \"FL_Body_Acc_Z\"\nzero = \"start\"";

@@ -29,17 +29,17 @@ fn body(t: f64) -> f64 {
 /// The pad at 1000 Hz in m/s^2 with a light barrier that is broken at 2.5 s, the body at 250 Hz in mm/s^2.
 fn recording() -> Vec<u8> {
     let barrier = |t: f64| if (2.5..2.6).contains(&t) { 5.0 } else { 0.1 };
-    let fast = Group {
-        rate: 1000.0,
-        channels: vec![
+    let fast = Group::at(
+        1000.0,
+        vec![
             Channel::new("Pad_FL", "m/s^2", sampled(1000.0, pad)),
             Channel::new("Barrier", "V", sampled(1000.0, barrier)),
         ],
-    };
-    let slow = Group {
-        rate: 250.0,
-        channels: vec![Channel::new("Body_FL", "mm/s^2", sampled(250.0, |t| 1e3 * body(t)))],
-    };
+    );
+    let slow = Group::at(
+        250.0,
+        vec![Channel::new("Body_FL", "mm/s^2", sampled(250.0, |t| 1e3 * body(t)))],
+    );
     mdf4::file(&[fast, slow])
 }
 
@@ -116,13 +116,13 @@ fn one_recording_holds_several_runs() {
 #[test]
 fn values_become_si() {
     let volts = sampled(100.0, |t| if t < 1.0 { 0.25 } else { 0.75 });
-    let file = mdf4::file(&[Group {
-        rate: 100.0,
-        channels: vec![
+    let file = mdf4::file(&[Group::at(
+        100.0,
+        vec![
             Channel::new("AI1", "V", volts.clone()),
             Channel::new("Travel", "mm", volts),
         ],
-    }]);
+    )]);
     let keys = "source = \"AI1\"\nunit = \"g\"\nscale = 10.0\noffset = -1.0\nsign = -1";
     let travel = "[[channel]]\nname = \"travel\"\nlocation = \"wheel\"\nside = \"left\"\naxis = \"z\"\n\
                   quantity = \"displacement\"\nsource = \"Travel\"\nzero = \"start\"\nzero_span = 0.5\n\n";
@@ -160,11 +160,13 @@ fn curves_are_read_from_any_file() {
 /// A sine on the K&C rig, its velocity and force at a rate of their own.
 #[test]
 fn sines_of_a_rig_come_to_one_rate() {
-    let signals = |rate: f64, names: [(&str, &str, f64); 2]| Group {
-        rate,
-        channels: names
-            .map(|(name, unit, size)| Channel::new(name, unit, sampled(rate, |t| size * pad(t))))
-            .into(),
+    let signals = |rate: f64, names: [(&str, &str, f64); 2]| {
+        Group::at(
+            rate,
+            names
+                .map(|(name, unit, size)| Channel::new(name, unit, sampled(rate, |t| size * pad(t))))
+                .into(),
+        )
     };
     let file = mdf4::file(&[
         signals(500.0, [("Weg", "mm", 20.0), ("unused", "V", 1.0)]),

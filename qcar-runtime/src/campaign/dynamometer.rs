@@ -6,6 +6,7 @@ use super::contents::{Campaign, Dynamometer, Run, Test};
 use super::curve::{other_kind, read};
 use super::manifest::{FORCES, UNCERTAINTY};
 use crate::error::{InputError, Place, Problem};
+use crate::shown::shown;
 
 /// Forces of a link at its speeds, all positive in extension, one value for each row.
 #[derive(Clone, Debug, PartialEq)]
@@ -103,9 +104,9 @@ impl ForceTable {
         }
         if let Some(&row) = turned.first() {
             let found = format!(
-                "a force of {} N at {} m/s, which acts in the direction of the motion, and {} such rows in all",
-                self.force[row],
-                self.velocity[row],
+                "a force of {} at {}, which acts in the direction of the motion, and {} such rows in all",
+                shown(self.force[row], "N"),
+                shown(self.velocity[row], "m/s"),
                 turned.len()
             );
             let expected =

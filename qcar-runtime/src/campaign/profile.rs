@@ -7,6 +7,7 @@ use super::curve::{increasing, read};
 use super::manifest::{ROAD, SLOPE};
 use super::recorded::{BESIDE_MANIFEST, recording};
 use crate::error::{InputError, Place, Problem};
+use crate::shown::shown;
 
 // The channels of distance and height in a measured file.
 mod measured;
@@ -58,7 +59,7 @@ fn between(file: PathBuf, name: &str, corners: &[[f64; 2]]) -> Result<RoadSample
     let third = corners.windows(3).find(|three| three[0][0] == three[2][0]);
     if let Some(pair) = backward.or(third) {
         let place = Place::Name(format!("{name} x"));
-        let found = format!("{} m after {} m", pair[1][0], pair[0][0]);
+        let found = format!("{} after {}", shown(pair[1][0], "m"), shown(pair[0][0], "m"));
         let expected = "a larger value, or the same value twice for a step";
         return Err(Problem::new(file, place, found, expected, "sort the rows, or correct the value").into());
     }

@@ -5,6 +5,7 @@ use qcar_signals::resample::Grid;
 
 use super::contents::{Quantity, Role, Run, Test};
 use super::finding::Finding;
+use crate::shown::shown;
 
 /// Flaws of the samples of a sensor in a run; `unit` is its SI unit.
 pub(super) fn of_samples(run: &Run, (channel, unit): (&str, &str), samples: &[f64], grid: Grid) -> Vec<Finding> {
@@ -20,15 +21,17 @@ pub(super) fn of_samples(run: &Run, (channel, unit): (&str, &str), samples: &[f6
 }
 
 fn description(flaw: &Flaw, unit: &str) -> String {
-    let (count, short) = (flaw.count, |value: f64| format!("{value:.3e}").parse().unwrap_or(value));
+    let (count, short) = (flaw.count, |value: f64| {
+        shown(format!("{value:.3e}").parse().unwrap_or(value), unit)
+    });
     match flaw.kind {
-        FlawKind::Dead(value) => format!("every sample is {value} {unit}: the channel is dead"),
+        FlawKind::Dead(value) => format!("every sample is {}: the channel is dead", shown(value, unit)),
         FlawKind::Clipped(value) => format!(
-            "{count} samples are cut off at {} {unit}: the channel is clipped",
+            "{count} samples are cut off at {}: the channel is clipped",
             short(value)
         ),
-        FlawKind::Spike(value) if count == 1 => format!("a spike to {} {unit}", short(value)),
-        FlawKind::Spike(value) => format!("{count} spikes, the largest to {} {unit}", short(value)),
-        FlawKind::Drift(drift) => format!("the mean drifts by {} {unit}", short(drift)),
+        FlawKind::Spike(value) if count == 1 => format!("a spike to {}", short(value)),
+        FlawKind::Spike(value) => format!("{count} spikes, the largest to {}", short(value)),
+        FlawKind::Drift(drift) => format!("the mean drifts by {}", short(drift)),
     }
 }

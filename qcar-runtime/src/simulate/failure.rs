@@ -2,6 +2,7 @@
 
 use crate::road::RoadError;
 use crate::roles::RoleError;
+use crate::shown::shown;
 use crate::solver::Report;
 use crate::tyre::TyreError;
 
@@ -13,7 +14,7 @@ pub enum SimulateError {
     Road(#[from] RoadError),
     #[error(transparent)]
     Tyre(#[from] TyreError),
-    #[error("{name} is {value} {unit}; expected a positive number")]
+    #[error("{name} is {}; expected a positive number", shown(*.value, .unit))]
     NotPositive {
         name: &'static str,
         value: f64,
@@ -28,8 +29,9 @@ pub enum SimulateError {
     #[error(transparent)]
     Role(#[from] RoleError),
     #[error(
-        "a sample rate of {rate} Hz is too low at {speed} m/s: the contact patch is passed in {passage} s, \
-         which takes at least {least} Hz to be seen"
+        "a sample rate of {rate} Hz is too low at {}: the contact patch is passed in {passage} s, \
+         which takes at least {least} Hz to be seen",
+        shown(*.speed, "m/s")
     )]
     TooFewSamples {
         rate: f64,
@@ -38,13 +40,16 @@ pub enum SimulateError {
         least: f64,
     },
     #[error(
-        "the tyre would be deflected by {deflection:.4} m under the static load, more than its radius of {radius} m; \
-         check k_tire, the static load and deflection, and the masses"
+        "the tyre would be deflected by {:.4} under the static load, more than its radius of {}; \
+         check k_tire, the static load and deflection, and the masses",
+        shown(*.deflection, "m"),
+        shown(*.radius, "m")
     )]
     TooSoft { deflection: f64, radius: f64 },
     #[error(
-        "the tyre pushes no more when it is pressed further than its static deflection of {deflection:.4} m, so nothing \
-         stands on it; check k_tire, the static load and deflection"
+        "the tyre pushes no more when it is pressed further than its static deflection of {:.4}, so nothing \
+         stands on it; check k_tire, the static load and deflection",
+        shown(*.deflection, "m")
     )]
     Unstable { deflection: f64 },
     #[error(

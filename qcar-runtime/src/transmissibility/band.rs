@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use super::{Estimator, Options, Point};
 use crate::campaign::{History, Quantity, Spacing, Sweep, Test};
 use crate::error::{InputError, Place, Problem};
+use crate::shown::shown;
 use crate::spectrum::transform;
 
 /// Default number of frequencies.
@@ -158,7 +159,7 @@ fn has_its_velocity(
     }
     let (place, found) = (
         Place::Name(reference.to_string()),
-        format!("a peak velocity of {velocity:.2e} m/s"),
+        format!("a peak velocity of {:.2e}", shown(velocity, "m/s")),
     );
     let expected = format!("one near `peak_velocity = {}`", sweep.peak_velocity);
     let remedy = "correct the unit, sign or calibration of its sensors, or the peak velocity in campaign.toml";

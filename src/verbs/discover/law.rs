@@ -145,18 +145,7 @@ fn of_curve(curve: &Curve, parameters: &[NewParameter], errors: &Errors, longest
     let scale = curve.scale.as_deref().and_then(named);
     let over = scale.or_else(|| named(&curve.over));
     let unit = over.map_or("in its unit".into(), |own| own.unit.to_string());
-    let scale = scale.map_or(1.0, |own| own.start);
-    let points = curve.points.iter().filter_map(|(x, y)| match y {
-        Ordinate::Number(y) => Some((x * scale, *y)),
-        Ordinate::Product(names) => {
-            let is_determined = names
-                .iter()
-                .all(|name| errors.get(name).is_some_and(|error| *error < DETERMINED));
-            let factors = names.iter().map(|name| named(name).map(|own| own.start));
-            Some((x * scale, factors.product::<Option<f64>>()?)).filter(|_| is_determined)
-        }
-    });
-    let points: Vec<(f64, f64)> = points.collect();
+    let points = determined(curve, scale.map_or(1.0, |own| own.start), &named, errors);
     let over = match curve.over.as_str() {
         "s" => "travel",
         "v" => "speed",
@@ -165,24 +154,18 @@ fn of_curve(curve: &Curve, parameters: &[NewParameter], errors: &Errors, longest
     };
     let rest = points.iter().find(|(x, _)| *x == 0.0).map(|(_, y)| *y);
     let [compression, rebound] = [-1.0, 1.0].map(|sign| side(&points, sign));
-    let largest = points
-        .iter()
-        .map(|(_, y)| (y - rest.unwrap_or(0.0)).abs())
-        .fold(0.0, f64::max);
     let listed = |points: &[(f64, f64)], of: &str| {
         let values = points
             .iter()
             .map(|(x, y)| format!("{} at {}", number(*y, 3), number(x.abs(), 3)));
         format!("{} {unit} {of}", values.collect::<Vec<_>>().join(", "))
     };
-    let is_even = compression.len() == rebound.len()
-        && compression
-            .iter()
-            .zip(&rebound)
-            .all(|(a, b)| (a.1 - b.1).abs() < ALIKE * largest);
+    let changes = points.iter().map(|(_, y)| (y - rest.unwrap_or(0.0)).abs());
     let sides = match (compression.is_empty(), rebound.is_empty()) {
         (true, true) => return format!("over the {over} it is not determined"),
-        (false, false) if is_even => listed(&rebound, "in both directions"),
+        (false, false) if are_alike(&compression, &rebound, ALIKE * changes.fold(0.0, f64::max)) => {
+            listed(&rebound, "in both directions")
+        }
         (false, false) => format!(
             "{} and {}",
             listed(&compression, "in compression"),
@@ -195,6 +178,31 @@ fn of_curve(curve: &Curve, parameters: &[NewParameter], errors: &Errors, longest
         Some(rest) => format!("over the {over} it changes from {} at rest to {sides}", number(rest, 3)),
         None => format!("over the {over} it is {sides}; at rest it is not determined"),
     }
+}
+
+/// The points of a curve whose ordinates are numbers, or products of parameters that the data determine.
+fn determined<'a>(
+    curve: &Curve,
+    scale: f64,
+    named: &impl Fn(&str) -> Option<&'a NewParameter>,
+    errors: &Errors,
+) -> Vec<(f64, f64)> {
+    let point = |(x, y): &(f64, Ordinate)| match y {
+        Ordinate::Number(y) => Some((x * scale, *y)),
+        Ordinate::Product(names) => {
+            let is_determined = names
+                .iter()
+                .all(|name| errors.get(name).is_some_and(|error| *error < DETERMINED));
+            let factors = names.iter().map(|name| named(name).map(|own| own.start));
+            Some((x * scale, factors.product::<Option<f64>>()?)).filter(|_| is_determined)
+        }
+    };
+    curve.points.iter().filter_map(point).collect()
+}
+
+/// True if both sides have as many points, whose ordinates differ by less than `limit`.
+fn are_alike(one: &[(f64, f64)], other: &[(f64, f64)], limit: f64) -> bool {
+    one.len() == other.len() && one.iter().zip(other).all(|(a, b)| (a.1 - b.1).abs() < limit)
 }
 
 fn is_clock(name: &str, parameters: &[NewParameter]) -> bool {

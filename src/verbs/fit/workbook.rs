@@ -5,12 +5,12 @@ use std::path::Path;
 
 use nalgebra::Complex;
 use qcar_runtime::error::InputError;
-use rust_xlsxwriter::{Chart, ChartAxisCrossing, ChartAxisLabelPosition, ChartType, Workbook, Worksheet, XlsxError};
+use rust_xlsxwriter::{ChartAxisCrossing, ChartType, Format, Workbook, Worksheet, XlsxError};
 
 use super::files::{Compared, compare};
 use super::{Fitted, render};
 use crate::files::put;
-use crate::spreadsheet::{Cell, filled, table};
+use crate::spreadsheet::{self, AFTER, BEFORE, Cell, MEASURED, Pen, filled, table};
 use crate::units;
 
 /// The name of every workbook of results.
@@ -19,11 +19,13 @@ pub(crate) const FILE: &str = "results.xlsx";
 /// The sheet of the transmissibilities.
 const RATIOS: &str = "Transmissibilities";
 /// Source of each curve, in the order of the columns.
-const SOURCES: [&str; 3] = ["measured", "before", "after"];
+const SOURCES: [(&str, Pen); 3] = [("measured", MEASURED), ("before", BEFORE), ("after", AFTER)];
 /// First column of the magnitudes; the phases follow.
 const MAGNITUDES: u16 = 3;
 /// Number of charts side by side, and rows and columns between them.
 const CHARTS: (usize, u32, u16) = (2, 16, 8);
+/// Decimals of decibels and degrees that are shown; a cell keeps them all.
+const DECIMALS: &str = "0.000";
 
 /// Writes the workbook into a folder.
 ///
@@ -106,7 +108,7 @@ fn channels(workbook: &mut Workbook, of: &Fitted) -> Result<(), XlsxError> {
 
 /// All ratios in rows, with a chart of each at the side.
 fn ratios(workbook: &mut Workbook, all: &[Compared]) -> Result<(), XlsxError> {
-    let of_all = |unit: &'static str| SOURCES.map(|source| format!("{source} [{unit}]"));
+    let of_all = |unit: &'static str| SOURCES.map(|(source, _)| format!("{source} [{unit}]"));
     let headings = [
         ["run".into(), "channel".into(), "frequency [Hz]".into()],
         of_all("dB"),
@@ -114,6 +116,9 @@ fn ratios(workbook: &mut Workbook, all: &[Compared]) -> Result<(), XlsxError> {
     ]
     .concat();
     let sheet = table(workbook, RATIOS, &headings, all.iter().flat_map(rows))?;
+    for column in MAGNITUDES..MAGNITUDES + 2 * SOURCES.len() as u16 {
+        sheet.set_column_format(column, &Format::new().set_num_format(DECIMALS))?;
+    }
     let mut next = 1;
     for (place, own) in all.iter().enumerate() {
         let last = next + own.observation.frequency.len() as u32 - 1;
@@ -141,21 +146,17 @@ fn rows<'a>(of: &'a Compared) -> impl Iterator<Item = Vec<Cell>> + 'a {
 /// Magnitudes over frequency.
 fn chart(sheet: &mut Worksheet, place: usize, of: &Compared, rows: RangeInclusive<u32>) -> Result<(), XlsxError> {
     let (first, last) = rows.into_inner();
-    let mut chart = Chart::new(ChartType::ScatterStraight);
-    chart
-        .title()
-        .set_name(&format!("{}, {}", of.observation.channel.name, of.level.name));
-    for (column, source) in (MAGNITUDES..).zip(SOURCES) {
-        let series = chart.add_series().set_name(source);
+    let title = format!("{}, {}", of.observation.channel.name, of.level.name);
+    let mut chart = spreadsheet::chart(ChartType::ScatterStraight, &title);
+    for (column, (source, pen)) in (MAGNITUDES..).zip(SOURCES) {
+        let series = chart.add_series().set_name(source).set_format(&mut pen.curve());
         series.set_categories((RATIOS, first, MAGNITUDES - 1, last, MAGNITUDES - 1));
         series.set_values((RATIOS, first, column, last, column));
     }
-    chart.x_axis().set_name("frequency [Hz]").set_log_base(10);
-    let frequency = &of.observation.frequency;
-    if let (Some(low), Some(high)) = (frequency.first(), frequency.last()) {
-        chart.x_axis().set_min(*low).set_max(*high);
+    chart.x_axis().set_name("frequency [Hz]");
+    if let [low, .., high] = of.observation.frequency[..] {
+        spreadsheet::logarithmic(&mut chart, low, high);
     }
-    chart.x_axis().set_label_position(ChartAxisLabelPosition::Low);
     chart
         .y_axis()
         .set_name("magnitude [dB]")

@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use qcar_runtime::error::InputError;
-use rust_xlsxwriter::{Chart, ChartType, Workbook, XlsxError};
+use rust_xlsxwriter::{ChartType, Workbook, XlsxError};
 
 use super::gather::{Study, Track};
 use crate::files::put;
-use crate::spreadsheet::{Cell, filled, table};
+use crate::spreadsheet::{self, AFTER, BEFORE, Cell, filled, table};
 use crate::units;
 use crate::verbs::fit::workbook::{FILE, sheets};
 use crate::verbs::simulate::comparison::Difference;
@@ -32,27 +32,29 @@ pub(super) fn write(of: &Study, folder: &Path) -> Result<(), InputError> {
 }
 
 fn cleats(workbook: &mut Workbook, of: &Track) -> Result<(), XlsxError> {
-    let models = [("before", Some(&of.before)), ("after", of.after.as_ref())];
+    let models = [
+        ("before", BEFORE, Some(&of.before)),
+        ("after", AFTER, of.after.as_ref()),
+    ];
     let driven: Vec<_> = models
         .into_iter()
-        .filter_map(|(name, driven)| Some((name, driven?)))
+        .filter_map(|(name, pen, driven)| Some((name, pen, driven?)))
         .collect();
     let rows = driven
         .iter()
-        .flat_map(|(name, driven)| driven.compared.runs.iter().map(|own| row(name, own)));
+        .flat_map(|(name, _, driven)| driven.compared.runs.iter().map(|own| row(name, own)));
     let sheet = table(workbook, ERRORS, &headings(), rows)?;
     let count = of.before.compared.runs.len() as u32;
     for (place, (column, title)) in (0..).zip(OF_ERRORS.into_iter().zip(["peak", "after-shake"])) {
-        let mut chart = Chart::new(ChartType::Column);
-        chart.title().set_name(&format!("Error of the {title} over cleats"));
-        for (first, (name, _)) in (0..).map(|model| model * count + 1).zip(&driven) {
-            let series = chart.add_series().set_name(*name);
+        let mut chart = spreadsheet::chart(ChartType::Column, &format!("Error of the {title} over cleats"));
+        for (first, (name, pen, _)) in (0..).map(|model| model * count + 1).zip(&driven) {
+            let series = chart.add_series().set_name(*name).set_format(&mut pen.bar());
             series.set_categories((ERRORS, first, 1, first + count - 1, 4));
             series.set_values((ERRORS, first, column, first + count - 1, column));
         }
         chart.y_axis().set_name("error [%]");
-        chart.set_width(900);
-        sheet.insert_chart(place * 17 + 1, OF_ERRORS[1] + 2, &chart)?;
+        chart.set_width(1000).set_height(420);
+        sheet.insert_chart(place * 23 + 1, OF_ERRORS[1] + 2, &chart)?;
     }
     Ok(())
 }

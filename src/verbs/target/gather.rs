@@ -175,12 +175,11 @@ pub(super) fn gather(
         false => None,
     };
     let cuts = space.as_ref().map_or(Vec::new(), |space| {
-        plan.cuts
-            .iter()
-            .map(|&knobs| cut(&task, space, knobs, DOTS, seed))
-            .collect()
+        let cut = |&knobs| cut(&task, space, knobs, DOTS, seed);
+        plan.cuts.iter().map(cut).collect()
     });
     let slopes = axle.slopes(&found.design);
+    let certain = sureness.as_ref().zip(doubts);
     Some(Answer {
         subject: subject.name.clone(),
         model: subject.model.about().name.to_string(),
@@ -188,17 +187,11 @@ pub(super) fn gather(
         cost: found.cost,
         notices: subject.notes.clone(),
         parameters: parameters(plan, &found, space.as_ref()),
-        targets: targets(
-            (subject, plan),
-            &task,
-            &found,
-            space.as_ref(),
-            sureness.as_ref().zip(doubts),
-        ),
+        targets: targets((subject, plan), &task, &found, space.as_ref(), certain),
         uncertainty: sureness,
         sensitivity: slopes
             .as_ref()
-            .map_or(Vec::new(), |slopes| sensitivity(plan, slopes, &found)),
+            .map_or(vec![], |slopes| sensitivity(plan, slopes, &found)),
         elasticities: slopes.map_or(Vec::new(), |slopes| elasticities(plan, &slopes, &found)),
         front: front.map(|front| front_answer(plan, &found, front)),
         space: space.map(|space| space_answer(plan, &space, cuts)),

@@ -7,7 +7,7 @@ pub fn file(group: &Group) -> Vec<u8> {
     let mut file = b"MATLAB 5.0 MAT-file".to_vec();
     file.resize(124, b' ');
     file.extend([0x00, 0x01, b'I', b'M']);
-    let times: Vec<f64> = (0..group.len()).map(|at| at as f64 / group.rate).collect();
+    let times: Vec<f64> = (0..group.len()).map(|at| group.time(at)).collect();
     matrix(&mut file, "t", &times);
     group
         .channels

@@ -13,7 +13,7 @@ const HALF_NODE: u16 = 16;
 
 /// A file with this group of at most 31 channels.
 pub fn file(group: &Group) -> Vec<u8> {
-    let times: Vec<f64> = (0..group.len()).map(|at| at as f64 / group.rate).collect();
+    let times: Vec<f64> = (0..group.len()).map(|at| group.time(at)).collect();
     let channels = group.channels.iter().map(|own| (&*own.name, &own.samples[..]));
     let mut columns: Vec<(&str, &[f64])> = channels.chain([("t", &times[..])]).collect();
     // Symbols are in the order of their names.

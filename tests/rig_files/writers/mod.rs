@@ -10,10 +10,12 @@ pub mod tables;
 pub mod tdms;
 pub mod uff;
 
-/// Channels of one rate.
+/// Channels with common times.
 pub struct Group {
     /// Hz.
     pub rate: f64,
+    /// Times in s, if they are not at this rate.
+    pub stamps: Option<Vec<f64>>,
     /// All of one length.
     pub channels: Vec<Channel>,
 }
@@ -36,6 +38,30 @@ impl Channel {
 }
 
 impl Group {
+    /// Channels at a rate in Hz.
+    pub fn at(rate: f64, channels: Vec<Channel>) -> Group {
+        Group {
+            rate,
+            stamps: None,
+            channels,
+        }
+    }
+
+    /// Channels at these times in s.
+    pub fn stamped(stamps: Vec<f64>, channels: Vec<Channel>) -> Group {
+        Group {
+            rate: 1.0 / (stamps[1] - stamps[0]),
+            stamps: Some(stamps),
+            channels,
+        }
+    }
+
+    /// Time of a sample in s.
+    pub fn time(&self, sample: usize) -> f64 {
+        let stamps = self.stamps.as_ref();
+        stamps.map_or_else(|| sample as f64 / self.rate, |stamps| stamps[sample])
+    }
+
     pub fn len(&self) -> usize {
         self.channels[0].samples.len()
     }
@@ -44,7 +70,7 @@ impl Group {
     pub fn records(&self) -> Vec<u8> {
         let mut records = Vec::with_capacity(8 * self.len() * (1 + self.channels.len()));
         for sample in 0..self.len() {
-            records.extend((sample as f64 / self.rate).to_le_bytes());
+            records.extend(self.time(sample).to_le_bytes());
             let values = self.channels.iter().map(|channel| channel.samples[sample]);
             records.extend(values.flat_map(f64::to_le_bytes));
         }

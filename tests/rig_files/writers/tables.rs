@@ -22,7 +22,7 @@ pub fn text(group: &Group) -> Vec<u8> {
         head(|own| &own.unit)
     );
     for sample in 0..group.len() {
-        let mut row = format!("{}", sample as f64 / group.rate);
+        let mut row = format!("{}", group.time(sample));
         group
             .channels
             .iter()
@@ -46,7 +46,7 @@ pub fn workbook(group: &Group) -> Vec<u8> {
         let _ = write!(sheet, "<row>{}{cells}</row>", words(first));
     }
     for sample in 0..group.len() {
-        let _ = write!(sheet, "<row><c><v>{}</v></c>", sample as f64 / group.rate);
+        let _ = write!(sheet, "<row><c><v>{}</v></c>", group.time(sample));
         group.channels.iter().for_each(|channel| {
             let _ = write!(sheet, "<c><v>{}</v></c>", channel.samples[sample]);
         });

@@ -8,6 +8,7 @@ use qcar_signals::signal::{Recording, Signal};
 use super::super::recorded::{problem, recording};
 use super::{RoadSamples, chords};
 use crate::error::{InputError, Place, Problem};
+use crate::shown::shown;
 
 /// Names of a channel of distances along a road, in lower case.
 const DISTANCES: [&str; 11] = [
@@ -47,7 +48,12 @@ impl RoadSamples {
             return Err(Problem::new(file, of(heights), found, "one height for each distance", remedy).into());
         }
         if let Some(at) = x.windows(2).position(|pair| pair[1] <= pair[0]) {
-            let found = format!("{} m after {} m at sample {}", x[at + 1], x[at], at + 2);
+            let found = format!(
+                "{} after {} at sample {}",
+                shown(x[at + 1], "m"),
+                shown(x[at], "m"),
+                at + 2
+            );
             let remedy = "sort the samples, and remove those at standstill";
             return Err(Problem::new(file, of(distances), found, "distances that increase", remedy).into());
         }

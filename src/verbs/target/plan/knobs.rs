@@ -1,5 +1,6 @@
 //! Parameters that may change, with their ranges, steps and costs.
 
+use qcar_runtime::shown::shown;
 use qcar_runtime::target::{Knob, Move};
 use toml::Spanned;
 
@@ -89,7 +90,7 @@ impl Planner<'_, '_> {
         if step > 0.0 && step <= span {
             return Some(step);
         }
-        let found = format!("{step} {unit}");
+        let found = shown(step, unit).to_string();
         self.wrong(
             at,
             "parameter.step",
@@ -108,7 +109,7 @@ impl Planner<'_, '_> {
         let today = values.as_slice()[place];
         let lower = self.amount(low, at, KEY, unit, today)?;
         let upper = self.amount(high, at, KEY, unit, today)?;
-        let found = format!("{lower} to {upper} {unit}");
+        let found = format!("{} to {}", shown(lower, unit), shown(upper, unit));
         if lower >= upper {
             self.wrong(at, KEY, &found, "a lower value and a higher one", "correct the range");
             return None;
@@ -116,7 +117,10 @@ impl Planner<'_, '_> {
         let valid = model.about().parameters[place].range;
         if let Some((least, most)) = valid.filter(|(least, most)| lower < *least || upper > *most) {
             let name = &model.about().name;
-            let expected = format!("a range within {least} to {most} {unit}, for which model `{name}` is valid");
+            let expected = {
+                let (least, most) = (shown(least, unit), shown(most, unit));
+                format!("a range within {least} to {most}, for which model `{name}` is valid")
+            };
             self.wrong(
                 at,
                 KEY,
@@ -130,7 +134,7 @@ impl Planner<'_, '_> {
             let mut moved = values.clone();
             moved.set(place, end);
             if let Err(error) = model.check_inertias(moved.as_slice()) {
-                let found = format!("{end} {unit}, where {error}");
+                let found = format!("{}, where {error}", shown(end, unit));
                 self.wrong(
                     at,
                     KEY,

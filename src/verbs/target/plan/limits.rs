@@ -1,6 +1,7 @@
 //! Targets as limits of readings of metrics.
 
 use qcar_runtime::metric::Reading;
+use qcar_runtime::shown::shown;
 use qcar_runtime::target::{Limit, Sense};
 use toml::Spanned;
 
@@ -172,12 +173,8 @@ impl<'a> Planner<'a, '_> {
         [here, there]: [f64; 2],
         (metric, run, unit): (&str, Option<&str>, &str),
     ) {
-        let shown = |value: f64| match unit {
-            "1" => value.to_string(),
-            unit => format!("{value} {unit}"),
-        };
         let of = run.map_or(String::new(), |run| format!(" on {run}"));
-        let (here, there) = (shown(here), shown(there));
+        let (here, there) = (shown(here, unit), shown(there, unit));
         let found = format!("{here} for `{metric}`{of}, where another target has {there}");
         self.wrong(
             at,

@@ -1,0 +1,67 @@
+//! Quantities in messages: in SI, unless the program shows them in other units.
+
+use std::fmt;
+use std::sync::OnceLock;
+
+/// Converts a value in an SI unit to the unit in which it is shown, with the name of that; `None` if it is shown in SI.
+pub type Convert = fn(f64, &str) -> Option<(f64, &'static str)>;
+
+static CONVERT: OnceLock<Convert> = OnceLock::new();
+
+/// Sets the units of all messages of this process. The first choice holds.
+pub fn convert_by(convert: Convert) {
+    let _ = CONVERT.set(convert);
+}
+
+/// A quantity in a message. A precision such as `{:.4}` is that of its value in SI.
+#[derive(Clone, Copy, Debug)]
+pub struct Shown<'a> {
+    /// Value in the unit `si`.
+    pub value: f64,
+    /// SI unit.
+    pub si: &'a str,
+}
+
+/// A value in an SI unit, to be shown.
+pub fn shown(value: f64, si: &str) -> Shown<'_> {
+    Shown { value, si }
+}
+
+impl fmt::Display for Shown<'_> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.converted() {
+            Some((value, unit)) => write!(out, "{value} {unit}"),
+            None => {
+                fmt::Display::fmt(&self.value, out)?;
+                self.unit(out)
+            }
+        }
+    }
+}
+
+impl fmt::LowerExp for Shown<'_> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.converted() {
+            Some((value, unit)) => write!(out, "{value} {unit}"),
+            None => {
+                fmt::LowerExp::fmt(&self.value, out)?;
+                self.unit(out)
+            }
+        }
+    }
+}
+
+impl Shown<'_> {
+    /// To six digits, as a factor between units adds others.
+    fn converted(&self) -> Option<(f64, &'static str)> {
+        let (value, unit) = CONVERT.get().and_then(|convert| convert(self.value, self.si))?;
+        Some((format!("{value:.5e}").parse().unwrap_or(value), unit))
+    }
+
+    fn unit(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.si {
+            "" | "1" => Ok(()),
+            si => write!(out, " {si}"),
+        }
+    }
+}
