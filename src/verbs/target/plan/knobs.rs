@@ -4,6 +4,7 @@ use qcar_runtime::target::{Knob, Move};
 use toml::Spanned;
 
 use super::Planner;
+use crate::table::number;
 use crate::verbs::target::file::{self, Amount};
 
 impl Planner<'_, '_> {
@@ -108,7 +109,7 @@ impl Planner<'_, '_> {
         let today = values.as_slice()[place];
         let lower = self.amount(low, at, KEY, unit, today)?;
         let upper = self.amount(high, at, KEY, unit, today)?;
-        let found = format!("{lower} to {upper} {unit}");
+        let found = format!("{} to {} {unit}", number(lower, 5), number(upper, 5));
         if lower >= upper {
             self.wrong(at, KEY, &found, "a lower value and a higher one", "correct the range");
             return None;
