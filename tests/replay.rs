@@ -6,10 +6,12 @@ use std::path::Path;
 
 use models::find;
 use nalgebra::Complex;
+use qcar::catalogue::load_text;
 use qcar_runtime::campaign::{Axis, Campaign, Quantity, Test, Truth};
 use qcar_runtime::model::Model;
 use qcar_runtime::response::Response;
 use qcar_runtime::response::parameters::Values;
+use qcar_runtime::simulate::replay::Direction;
 use qcar_runtime::simulate::{Between, Reading, Recorded, Replay, SimulateError, replay};
 use qcar_runtime::spectrum::{synthesize, transform};
 use qcar_runtime::transmissibility::{Point, signal};
@@ -195,8 +197,8 @@ fn derivatives_by_initial_states_are_those_of_differences() {
     let replay = Replay::new(model, vec![recorded], how, Vec::new(), readings);
     let base = replay.run(p, &[]);
     // A linear model: no step is too long for a difference.
-    let moved: Vec<(usize, f64)> = (0..states).map(|state| (state, 1.0)).collect();
-    let derivatives = replay.by_initial_states(&base, p, &[], &moved);
+    let all: Vec<Direction> = (0..states).map(Direction::Initial).collect();
+    let derivatives = replay.along(&base, (p, &[]), &all);
     for (state, derivatives) in derivatives.iter().enumerate() {
         let signals = replay.run(p, &[(state, 1.0)]).signals;
         for ((moved, base), derivative) in signals.iter().zip(&base.signals).zip(derivatives) {
@@ -208,6 +210,145 @@ fn derivatives_by_initial_states_are_those_of_differences() {
                 .sum::<f64>();
             let size = difference.iter().map(|d| d * d).sum::<f64>();
             assert!(error <= 1e-6 * size, "state {state}: {error} of {size}");
+        }
+    }
+}
+
+/// A quarter car with the laws that have kinks: dry friction, a digressive and asymmetric damper, a bump stop, a progressive tyre.
+const WITH_KINKS: &str = "
+axle kinks {
+    known param m_body: kg = 400;
+    known param m_wheel: kg = 40;
+    param k: N/m = 25e3 in 5e3..200e3;
+    param c: N s/m = 1500;
+    param v0: m/s = 0.3;
+    param rebound: 1 = 1.7;
+    param f_dry: N = 90;
+    param k_dry: N/m = 20e3;
+    param k_stop: N/m^2 = 4e6;
+    param gap: m = 0.01;
+    param k_tire: N/m = 220e3;
+    param soft: N/m^2 = 3e6;
+    direction z {
+        road pad;
+        mass body = m_body;
+        mass wheel = m_wheel;
+        link tire: wheel - pad { force = k_tire * s + soft * s * abs(s); }
+        link spring: body - wheel {
+            spring k;
+            force = if s < -gap { -k_stop * (s + gap)^2 } else { 0 };
+        }
+        link damper: body - wheel {
+            force = (if v > 0 { rebound } else { 1 }) * c * v / (1 + abs(v) / v0);
+        }
+        link friction: body - wheel {
+            state f: N;
+            rate f = k_dry * (v - abs(v) * f / f_dry);
+            force = f;
+        }
+        output body.acceleration;
+        output wheel.acceleration;
+    }
+}
+";
+
+/// Sum of forty sines over time, by a factor.
+fn rough_road(factor: f64, rate: f64, samples: usize) -> Vec<f64> {
+    let sine = |t: f64, k: f64| 0.02 * (TAU * 0.5 * (k + 1.0) * t + k * k).sin();
+    let at = |sample: usize| (0..40).map(|k| sine(sample as f64 / rate, f64::from(k))).sum::<f64>();
+    (0..samples).map(|sample| factor * at(sample)).collect()
+}
+
+/// Derivatives along all parameters, the amplitude of the road and all initial states are those of differences, to the accuracy of
+/// these.
+#[test]
+fn derivatives_through_kinks_are_those_of_differences() {
+    derivatives_agree(WITH_KINKS, 1e-6, true);
+}
+
+/// A friction so stiff that its state would not decay in a step while it slides: its derivatives are those of shorter steps, and so
+/// agree with differences to the accuracy of the steps.
+#[test]
+fn derivatives_of_a_stiff_friction_do_not_grow() {
+    derivatives_agree(
+        &WITH_KINKS.replace("k_dry: N/m = 20e3", "k_dry: N/m = 200e3"),
+        5e-3,
+        false,
+    );
+}
+
+/// Compares derivatives with central differences of whole replays, with states that are measured anew in between.
+fn derivatives_agree(model: &str, within: f64, by_states: bool) {
+    const STEP: f64 = 1e-6;
+    /// Of the positions, the velocities and the force of friction.
+    const SIZES: [f64; 5] = [0.05, 0.05, 1.0, 1.0, 90.0];
+    let loaded = load_text("kinks", model)
+        .map_err(|failure| failure.to_string())
+        .unwrap();
+    let model: &dyn Model = &*loaded;
+    let given = BTreeMap::new();
+    let p = Values::resolve(model.about(), &given, &given)
+        .unwrap()
+        .as_slice()
+        .to_vec();
+    let (rate, samples, states) = (200.0, 500, model.about().states.len());
+    let readings: Vec<Reading> = (0..2).map(Reading::Output).chain([Reading::State(0)]).collect();
+    let restarts = vec![(0, vec![(0, 0.001)]), (240, vec![(0, 0.002), (1, -0.01)])];
+    let roads = [1.0, 1.0 + STEP, 1.0 - STEP].map(|factor| rough_road(factor, rate, samples));
+    for periodic in [false, true] {
+        let how = Between {
+            periodic,
+            ..band_limited(rate, samples)
+        };
+        let [replay, up, down] = roads.each_ref().map(|samples| {
+            let recorded = Recorded {
+                excitation: 0,
+                power: 1,
+                samples,
+            };
+            Replay::new(model, vec![recorded], how, restarts.clone(), readings.clone())
+        });
+        // At rest, tiny differences of the states would change the steps; links at rest would begin at a kink.
+        let begin: Vec<(usize, f64)> = (0..states).map(|state| (state, 0.01 * (state + 1) as f64)).collect();
+        let base = replay.run(&p, &begin);
+        let both = |step: f64, run: &dyn Fn(f64) -> Vec<Vec<f64>>| (step, [run(step), run(-step)]);
+        let differences = |direction: &Direction| match *direction {
+            Direction::Parameters(ref own) => both(STEP * p[own[0]], &|by| {
+                let mut moved = p.clone();
+                own.iter().for_each(|&own| moved[own] += by);
+                replay.run(&moved, &begin).signals
+            }),
+            Direction::Amplitude(_) => both(STEP, &|by| if by > 0.0 { &up } else { &down }.run(&p, &begin).signals),
+            Direction::Initial(state) => both(STEP * SIZES[state], &|by| {
+                let mut moved = begin.clone();
+                moved[state].1 += by;
+                replay.run(&p, &moved).signals
+            }),
+        };
+        let parameters = (0..p.len()).map(|at| Direction::Parameters(vec![at]));
+        let mut directions: Vec<Direction> = parameters.chain([Direction::Amplitude(0)]).collect();
+        if by_states && !periodic {
+            directions.extend((0..states).map(Direction::Initial));
+        }
+        let slopes = replay.along(&base, (&p, &begin), &directions);
+        for (direction, slopes) in directions.iter().zip(&slopes) {
+            let (step, [up, down]) = differences(direction);
+            for (signal, slope) in slopes.iter().enumerate() {
+                let difference = up[signal]
+                    .iter()
+                    .zip(&down[signal])
+                    .map(|(up, down)| (up - down) / (2.0 * step));
+                let (error, size) = difference
+                    .zip(slope)
+                    .fold((0.0, 0.0), |(error, size), (difference, slope)| {
+                        (error + (slope - difference).powi(2), size + difference * difference)
+                    });
+                let error = (error / size).sqrt();
+                assert!(
+                    error < within,
+                    "{error:.1e} in signal {signal} by {direction:?}, periodic: {periodic}"
+                );
+            }
         }
     }
 }

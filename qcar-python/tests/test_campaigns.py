@@ -45,6 +45,12 @@ def test_choices_of_a_fit(campaigns):
     assert {ratio.channel for ratio in fixed.ratios if ratio.fitted} == {"pad_to_wheel"}
 
 
+def test_time_histories_alone_are_fitted_sample_by_sample(campaigns):
+    fitted = qcar.fit(campaigns / "emps")
+    # No transmissibility depends on an offset.
+    assert "f_offset" in fitted.stderr and fitted.converged
+
+
 def test_a_simulation_holds_its_runs_against_the_measurement(fitted, campaigns):
     at_start = qcar.simulate(campaigns / "axle_a_rig")
     after = qcar.simulate(campaigns / "axle_a_rig", fitted.values)

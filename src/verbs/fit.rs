@@ -46,6 +46,8 @@ pub(crate) mod files;
 pub(crate) mod workbook;
 // The fit of a nonlinear model.
 pub(crate) mod nonlinear;
+// Transmissibilities beside such a fit.
+mod records;
 
 /// Fit a model to the sweeps and time histories of a campaign
 ///
@@ -241,35 +243,40 @@ impl Fitted {
     }
 }
 
-/// Reads a campaign and fits a model to it.
+/// Reads a campaign, fits a model to it as `qcar fit` does, and compares the transmissibilities.
+///
+/// # Errors
+/// Fails if something cannot be read, or if the campaign has no data for the model.
 pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failure> {
     let begun = Instant::now();
     let mut campaign = Campaign::open(folder)?;
     let model = catalogue::of_campaign(&campaign, choices.model.as_deref(), Wanted::Values)?;
     let plan = plan(&campaign, model.about(), choices)?;
+    let of_all_runs = records::fit(&campaign, model.about(), choices)?;
+    let plan = match &of_all_runs {
+        Some(found) => records::known(plan, found),
+        None => plan,
+    };
     refuse_unseen(&model, &plan)?;
-    let channels = each_once(choices.channels.iter().cloned());
-    let wanted = (!channels.is_empty()).then_some(channels.as_slice());
-    let measure =
-        |on_progress: OnProgress<'_>| levels(&campaign, model.about(), wanted, &Options::default(), on_progress);
-    let levels = while_counting(format!("{}: transmissibilities of run", campaign.name), measure)?;
+    let levels = measure(&campaign, model.about(), choices)?;
     let measured = outputs(model.about(), &levels);
     let wanted = Wanted::JacobianOf(&measured);
     let model = catalogue::of_campaign(&campaign, choices.model.as_deref(), wanted)?;
     let setup = Setup::new(&*model, &plan, &levels)?;
     model.check_inertias(setup.values())?;
     campaign.notices.extend(notices::silent_runs(&campaign, &levels));
-    campaign.notices.extend(notices::unused_tables(&campaign));
+    if of_all_runs.is_none() {
+        campaign.notices.extend(notices::unused_tables(&campaign));
+    }
     campaign.notices.extend(out_of_range(model.about(), setup.values()));
-    let profiled = profiled(&plan, model.about(), setup.free(), &choices.profile)?;
+    let profiled = match of_all_runs {
+        Some(_) => Vec::new(),
+        None => profiled(&plan, model.about(), setup.free(), &choices.profile)?,
+    };
     let searches = format!("{}: fitting {}, search", campaign.name, model.about().name);
     let fit = while_counting(searches, |on_progress| setup.fit_with_progress(on_progress));
     let profiles = profiles(&setup, &fit, &profiled, &campaign.name);
-    let resamples = choices.bootstrap.filter(|_| fit.converged);
-    let bootstrap = resamples.map(|resamples| {
-        let repeat = |on_progress: OnProgress<'_>| setup.bootstrap(&fit, resamples as usize, on_progress);
-        while_counting(format!("{}: bootstrap, fit", campaign.name), repeat)
-    });
+    let bootstrap = bootstrap(&setup, &fit, choices.bootstrap, &campaign.name);
     let mut fitted = Fitted {
         seconds: begun.elapsed().as_secs_f64(),
         campaign,
@@ -279,9 +286,33 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
         profiles,
         bootstrap,
     };
-    clamped::take_over(&mut fitted)?;
+    match of_all_runs {
+        Some(found) => records::take_over(&mut fitted, found),
+        None => clamped::take_over(&mut fitted)?,
+    }
     fitted.campaign.notices.extend(notices::all_at_bounds(&fitted.fit));
     Ok(fitted)
+}
+
+/// The measured ratios of all runs.
+fn measure(campaign: &Campaign, about: &About, choices: &Choices) -> Result<Vec<Level>, InputError> {
+    let channels = each_once(choices.channels.iter().cloned());
+    let wanted = (!channels.is_empty()).then_some(channels.as_slice());
+    while_counting(format!("{}: transmissibilities of run", campaign.name), |on_progress| {
+        levels(campaign, about, wanted, &Options::default(), on_progress)
+    })
+}
+
+/// Fits to resamples, if they are requested and the fit has a minimum.
+fn bootstrap(
+    setup: &Setup<'_, dyn Model + '_>,
+    fit: &Fit,
+    resamples: Option<u32>,
+    campaign: &str,
+) -> Option<Bootstrap> {
+    let resamples = resamples.filter(|_| fit.converged)?;
+    let repeat = |on_progress: OnProgress<'_>| setup.bootstrap(fit, resamples as usize, on_progress);
+    Some(while_counting(format!("{campaign}: bootstrap, fit"), repeat))
 }
 
 /// Names of the parameters to profile.

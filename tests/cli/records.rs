@@ -157,33 +157,64 @@ fn gains_of_input_and_output_limit_what_a_record_determines() {
     }
 }
 
-/// The mass starts in motion, which transmissibilities take for a response to the force; a fit to the samples finds the start too.
-/// Channels are only those of transmissibilities, so that naming one asks for them.
+const TRUTH: [(&str, f64, &str); 3] = [
+    ("m_body", 2.0, "kg"),
+    ("c_body", 3.0, "N s/m"),
+    ("k_body", 800.0, "N/m"),
+];
+
+/// A campaign of a mass that starts in motion, which transmissibilities take for a response to the force.
+fn moving_campaign(folder: &Path) {
+    let start = |(name, value, unit): &(&str, f64, &str)| parameter(name, 0.8 * value, unit, "");
+    let parameters: String = TRUTH.iter().map(start).collect();
+    let force = (0..SAMPLES).map(|k| push((k as f64 + 0.5) / RATE)).collect();
+    let columns = [("push", force), ("z", mass([0.02, -0.4], push))];
+    recorded_campaign(folder, &parameters, &columns);
+}
+
+/// A fit to the samples finds the start of the motion too. Channels are only those of transmissibilities, so that naming one asks for
+/// them.
 #[test]
 fn a_linear_model_is_fitted_to_the_samples_of_time_histories_alone() {
     let folder = tempfile::tempdir().unwrap();
-    let truth = [
-        ("m_body", 2.0, "kg"),
-        ("c_body", 3.0, "N s/m"),
-        ("k_body", 800.0, "N/m"),
-    ];
-    let parameters: String = truth
-        .iter()
-        .map(|(name, value, unit)| parameter(name, 0.8 * value, unit, ""))
-        .collect();
-    let force = (0..SAMPLES).map(|k| push((k as f64 + 0.5) / RATE)).collect();
-    let columns = [("push", force), ("z", mass([0.02, -0.4], push))];
-    recorded_campaign(folder.path(), &parameters, &columns);
+    moving_campaign(folder.path());
     let path = folder.path().to_str().unwrap();
     let fit = |more: &[&str]| -> Value {
         let words = [&["fit", path, "--starts", "1", "--format", "json"], more].concat();
         serde_json::from_str(&succeeds(&words)).unwrap()
     };
     let (of_samples, of_channel) = (fit(&[]), fit(&["--channels", "f_to_body"]));
-    for (name, truth, _) in truth {
+    for (name, truth, _) in TRUTH {
         let error = |fitted: &Value| (fitted["parameters"][name]["value"].as_f64().unwrap() / truth - 1.0).abs();
         assert!(error(&of_samples) < 1e-3, "{name}: {of_samples}");
         assert!(error(&of_channel) > 1e-3, "{name}: {of_channel}");
+    }
+}
+
+/// Every verb that fits uses the values of `qcar fit`.
+#[test]
+fn score_compare_and_study_fit_the_samples_of_time_histories_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    moving_campaign(folder.path());
+    let path = folder.path().to_str().unwrap();
+    let truth = TRUTH.map(|(name, value, _)| format!("{name} = {value:?}\n")).concat();
+    fs::write(folder.path().join("truth.toml"), format!("[parameters]\n{truth}")).unwrap();
+    let score = succeeds(&["score", path, "--within", "0.1"]);
+    assert_eq!(score.matches(" well").count(), TRUTH.len(), "{score}");
+    let compared: Value = serde_json::from_str(&succeeds(&["compare", path, path, "--format", "json"])).unwrap();
+    for ((name, truth, _), own) in TRUTH.iter().zip(compared["parameters"].as_array().unwrap()) {
+        let value = own["a"].as_f64().unwrap();
+        assert!(
+            own["name"] == *name && (value / truth - 1.0).abs() < 1e-3,
+            "{name}: {own}"
+        );
+    }
+    let out = folder.path().join("out");
+    succeeds(&["study", path, "--out", out.to_str().unwrap()]);
+    let fit: Value = serde_json::from_str(&fs::read_to_string(out.join("fit/fit.json")).unwrap()).unwrap();
+    for (name, truth, _) in TRUTH {
+        let value = fit["parameters"][name]["value"].as_f64().unwrap();
+        assert!((value / truth - 1.0).abs() < 1e-3, "{name}: {fit}");
     }
 }
 

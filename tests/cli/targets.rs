@@ -460,6 +460,29 @@ fn values_that_are_wanted_are_met_and_the_design_is_simulated() {
     );
 }
 
+/// A limit of another unit is as wrong for all three cleats, and a cut along a parameter whose range is wrong is no further mistake.
+#[test]
+fn a_mistake_is_told_once() {
+    let folder = repository();
+    let said_of = |targets: &str| {
+        targets_of_axle_a(folder.path(), targets);
+        let ran = run_line(folder.path(), "target targets.toml");
+        assert_eq!(ran.status, 2, "{}", ran.stdout);
+        ran.stderr
+    };
+    let unit = said_of("[[target]]\nmetric = \"body_x.peak\"\nat_most = \"2 kg\"");
+    assert_eq!(unit.matches("`target.at_most`: found \"2 kg\"").count(), 1, "{unit}");
+    let range = said_of(
+        "[[parameter]]\nname = \"k_tire\"\nrange = [\"115 %\", \"85 %\"]\n\
+         [space]\ncuts = [[\"k_tire\", \"k_wheel_z\"]]",
+    );
+    assert!(
+        range.contains("`parameter.range`: found 215050 to 158950 N/m"),
+        "{range}"
+    );
+    assert!(!range.contains("space.cuts"), "{range}");
+}
+
 #[test]
 fn what_is_odd_or_said_twice_is_told() {
     let out = succeeds(&[

@@ -92,6 +92,9 @@ def fit(
 ) -> Fit:
     """Fit a linear model to the sweeps and time histories of a campaign.
 
+    Sweeps are compared as transmissibilities. If the campaign has time histories and no sweep to fit, these are fitted sample by sample unless
+    ``channels`` names some; the ratios of the result are then only compared.
+
     Parameters
     ----------
     campaign

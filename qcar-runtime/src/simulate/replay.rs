@@ -7,12 +7,13 @@
 mod input;
 // How the readings of a linear model depend on its initial states.
 mod initial;
-// A model with one parameter set, or with eight.
-mod sets;
 // Steps of the Runge-Kutta method, with step control.
 mod stepper;
+// Derivatives of the signals, integrated with the motion.
+mod tangent;
 
 pub use input::{Between, Recorded};
+pub use tangent::Direction;
 
 use std::cmp::Ordering;
 use std::sync::OnceLock;
@@ -20,12 +21,12 @@ use std::sync::OnceLock;
 use rayon::prelude::*;
 
 use super::failure::{SimulateError, positive};
-use crate::model::{About, LANES, Model, Quantity, SignalKind, StateKind};
+use crate::model::{About, Model, Quantity, SignalKind, StateKind};
 use crate::response::signal::{SignalError, missing, output_of};
 use initial::FreeResponse;
 use input::rows;
-use sets::{Alone, ModelSets, Sets};
 use stepper::Stepper;
+use tangent::{Step, Tangent};
 
 /// Source of a sensor's signal during integration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,7 +50,7 @@ pub struct Replay<'a> {
     nodes: OnceLock<Instants>,
 }
 
-/// Result of a replay, with a row for each parameter set.
+/// Result of a replay.
 pub struct Replayed {
     /// Samples of each reading; not finite after the model diverges even with the shortest steps.
     pub signals: Vec<Vec<f64>>,
@@ -84,19 +85,12 @@ impl Instants {
     }
 }
 
-/// Step lengths of a replay.
-#[derive(Clone, Copy)]
-enum Steps<'r> {
-    /// As the laws need.
-    Found,
-    /// Those of another replay.
-    Like(&'r Replayed),
-    /// Those of another replay, until the states of the set agree with its states.
-    Beside(&'r Replayed),
-}
-
 /// Largest number of periods until a motion counts as periodic.
 const PERIODS: usize = 60;
+/// Steps whose Jacobians are evaluated at once, at least.
+const AT_ONCE: usize = 16;
+/// Directions that are followed together: two vectors of eight numbers.
+const TOGETHER: usize = 16;
 /// Largest relative difference of the states between two periods of a periodic motion.
 const REPEATED: f64 = 1e-9;
 
@@ -122,83 +116,122 @@ impl<'a> Replay<'a> {
     /// The signals of a parameter set. `begin` has states with the deviation of their initial value from the measured
     /// one.
     pub fn run(&self, p: &[f64], begin: &[(usize, f64)]) -> Replayed {
-        let mut alone = Alone::new(self.model, p);
-        let mut replayed = self.advance(&mut alone, (self.rest::<Alone<'_>>(), begin), Steps::Found);
+        let rest = vec![0.0; self.model.about().states.len()];
+        let mut replayed = self.advance(p, rest, begin);
         let most = if self.how.periodic { PERIODS } else { 0 };
         while replayed.periods <= most && !replayed.repeats() {
             let periods = replayed.periods + 1;
-            replayed = self.advance(&mut alone, (replayed.end, &[]), Steps::Found);
+            replayed = self.advance(p, replayed.end, &[]);
             replayed.periods = periods;
         }
         replayed
     }
 
-    /// The signals of each of several parameter sets, with the steps and the number of periods of a replay. A remaining
-    /// transient is the same in both, so their difference is due to the parameters alone.
-    pub fn like(&self, other: &Replayed, p: &[Vec<f64>], begin: &[(usize, f64)]) -> Vec<Vec<Vec<f64>>> {
-        let some = |p: &[Vec<f64>]| match p {
-            [one] => vec![self.again(&mut Alone::new(self.model, one), begin, other).signals],
-            several => {
-                let replayed = self.again(&mut ModelSets::new(self.model, several), begin, other);
-                sets::apart(replayed.signals, several.len())
-            }
-        };
-        p.par_chunks(LANES).flat_map_iter(some).collect()
-    }
-
-    /// Derivative of each signal by some initial states, each with its step for a difference quotient. A linear model
-    /// without resets needs no steps.
-    pub fn by_initial_states(
+    /// Derivative of each signal of a replay along some directions, for each of these.
+    ///
+    /// Those by initial states of a linear model without resets are its free responses. All others are integrated with the motion;
+    /// if it repeats, for as many periods as the replay took to repeat.
+    pub fn along(
         &self,
         base: &Replayed,
-        p: &[f64],
-        begin: &[(usize, f64)],
-        states: &[(usize, f64)],
+        (p, begin): (&[f64], &[(usize, f64)]),
+        directions: &[Direction],
     ) -> Vec<Vec<Vec<f64>>> {
-        let runs_freely = self.restarts.iter().all(|(sample, _)| *sample == 0);
-        if self.model.about().linear && runs_freely {
-            return self.free_responses(base, p, states);
-        }
-        let quotient = |&(state, step): &(usize, f64)| {
-            let begin: Vec<_> = begin.iter().copied().chain([(state, step)]).collect();
-            let moved = self.beside(base, p, &begin);
-            let of_signal = |(moved, signal): (&Vec<f64>, &Vec<f64>)| {
-                let samples = moved.iter().zip(signal);
-                samples.map(|(moved, value)| (moved - value) / step).collect()
-            };
-            moved.iter().zip(&base.signals).map(of_signal).collect()
+        let runs_freely = self.model.about().linear && self.restarts.iter().all(|(sample, _)| *sample == 0);
+        let free = |direction: &Direction| match *direction {
+            Direction::Initial(state) if runs_freely => Some(state),
+            _ => None,
         };
-        states.par_iter().map(quotient).collect()
+        let states: Vec<usize> = directions.iter().filter_map(free).collect();
+        let others: Vec<Direction> = directions.iter().filter(|own| free(own).is_none()).cloned().collect();
+        let some = |directions: &[Direction]| self.follow(base, (p, begin), directions);
+        let others: Vec<_> = others.par_chunks(TOGETHER).flat_map_iter(some).collect();
+        let (mut states, mut others) = (self.free_responses(base, p, &states).into_iter(), others.into_iter());
+        let next = |own: &Direction| {
+            if free(own).is_some() {
+                states.next()
+            } else {
+                others.next()
+            }
+        };
+        directions.iter().filter_map(next).collect()
     }
 
-    /// [`Self::by_initial_states`] of a linear model: the response of each reading to a unit initial state.
-    fn free_responses(&self, base: &Replayed, p: &[f64], states: &[(usize, f64)]) -> Vec<Vec<Vec<f64>>> {
+    /// [`Self::along`] directions that are followed together.
+    fn follow(
+        &self,
+        base: &Replayed,
+        (p, begin): (&[f64], &[(usize, f64)]),
+        directions: &[Direction],
+    ) -> Vec<Vec<Vec<f64>>> {
+        let mut tangent = Tangent::new(self.model, p, directions);
+        let mut signals = Vec::new();
+        for period in 1..=base.periods {
+            let begin = Some(begin).filter(|_| period == 1);
+            signals = self.differentiate(&mut tangent, begin, (base, period));
+        }
+        let of_direction = |lane: usize| {
+            let own = signals.iter_mut().skip(lane).step_by(directions.len());
+            own.map(std::mem::take).collect()
+        };
+        (0..directions.len()).map(of_direction).collect()
+    }
+
+    /// Follows one period of a replay, with its steps, from the present state or from the `begin` of a record. A row for each
+    /// reading and direction.
+    fn differentiate(
+        &self,
+        tangent: &mut Tangent<'_>,
+        begin: Option<&[(usize, f64)]>,
+        (base, period): (&Replayed, usize),
+    ) -> Vec<Vec<f64>> {
+        let steps = steps(self.how.rate);
+        let length = 1.0 / (self.how.rate * steps as f64);
+        let inputs = self.nodes.get_or_init(|| self.inputs(steps));
+        let count = inputs.count();
+        let mut restarts = self.restarts.iter().peekable();
+        let mut signals = vec![Vec::with_capacity(self.how.samples); self.readings.len() * tangent.directions()];
+        let mut taken = Vec::new();
+        for (sample, halvings) in base.halvings.chunks(steps).enumerate() {
+            let restart = restarts.next_if(|(at, _)| *at == sample);
+            if restart.is_some() || taken.len() >= AT_ONCE {
+                tangent.follow(&taken, &self.readings, &mut signals);
+                taken.clear();
+            }
+            for &(state, value) in restart.iter().flat_map(|(_, seen)| seen) {
+                tangent.set(state, value);
+            }
+            if let Some(begin) = begin.filter(|_| sample == 0) {
+                tangent.begin(begin);
+            }
+            // The replay has kept the states of its last period alone.
+            let known = (period == base.periods).then(|| base.states.at(sample));
+            taken.extend(halvings.iter().enumerate().map(|(step, &halvings)| {
+                let node = 2 * (sample * steps + step);
+                Step {
+                    nodes: [node, node + 1, self.end(node, count)].map(|node| inputs.at(node)),
+                    length,
+                    halvings,
+                    is_read: step == 0,
+                    from: known.filter(|_| step == 0),
+                }
+            }));
+        }
+        tangent.follow(&taken, &self.readings, &mut signals);
+        signals
+    }
+
+    /// Response of each reading of a linear model to a unit initial state, for each of some states.
+    fn free_responses(&self, base: &Replayed, p: &[f64], states: &[usize]) -> Vec<Vec<Vec<f64>>> {
+        if states.is_empty() {
+            return Vec::new();
+        }
         let steps = steps(self.how.rate);
         let free = FreeResponse::new(self.model, p, 1.0 / (self.how.rate * steps as f64));
         let of_reading = |reading: &Reading| free.of(*reading, base.halvings.chunks(steps), states);
         let by_reading: Vec<Vec<Vec<f64>>> = self.readings.par_iter().map(of_reading).collect();
         let of_state = |state: usize| by_reading.iter().map(|rows| rows[state].clone()).collect();
         (0..states.len()).map(of_state).collect()
-    }
-
-    /// The signals for other initial states. Once all states agree with those of the replay, its samples are copied.
-    fn beside(&self, other: &Replayed, p: &[f64], begin: &[(usize, f64)]) -> Vec<Vec<f64>> {
-        let mut alone = Alone::new(self.model, p);
-        let from = (self.rest::<Alone<'_>>(), begin);
-        self.advance(&mut alone, from, Steps::Beside(other)).signals
-    }
-
-    /// With the steps of another replay.
-    fn again<S: Sets>(&self, sets: &mut S, begin: &[(usize, f64)], other: &Replayed) -> Replayed {
-        let mut replayed = self.advance(sets, (self.rest::<S>(), begin), Steps::Like(other));
-        for _ in 1..other.periods {
-            replayed = self.advance(sets, (replayed.end, &[]), Steps::Like(other));
-        }
-        replayed
-    }
-
-    fn rest<S: Sets>(&self) -> Vec<f64> {
-        vec![0.0; self.model.about().states.len() * S::LANES]
     }
 
     /// The inputs of the model at each node.
@@ -212,69 +245,36 @@ impl<'a> Replay<'a> {
     }
 
     /// Integrates from a state with some changed values.
-    fn advance<S: Sets>(
-        &self,
-        side: &mut S,
-        (mut x, begin): (Vec<f64>, &[(usize, f64)]),
-        taken: Steps<'_>,
-    ) -> Replayed {
+    fn advance(&self, p: &[f64], mut x: Vec<f64>, begin: &[(usize, f64)]) -> Replayed {
         let steps = steps(self.how.rate);
         let inputs = self.nodes.get_or_init(|| self.inputs(steps));
-        let about = self.model.about();
         let mut restarts = self.restarts.iter().peekable();
-        let mut y = vec![0.0; about.outputs.len() * S::LANES];
-        let mut stepper = Stepper::new(
-            side,
-            (x.len(), about.inputs.len()),
-            1.0 / (self.how.rate * steps as f64),
-        );
+        let mut y = vec![0.0; self.model.about().outputs.len()];
+        let mut stepper = Stepper::new(self.model, p, 1.0 / (self.how.rate * steps as f64));
         let count = inputs.count();
         let mut halvings = Vec::with_capacity(count / 2);
-        let mut signals = vec![Vec::new(); self.readings.len() * S::LANES];
+        let mut signals = vec![Vec::new(); self.readings.len()];
         let mut states = Vec::with_capacity(x.len() * self.how.samples);
-        let mut apart = vec![0.0_f64; x.len()];
         for first in (0..count).step_by(2 * steps) {
             let sample = first / (2 * steps);
             if let Some((_, seen)) = restarts.next_if(|(at, _)| *at == sample) {
-                seen.iter()
-                    .for_each(|&(state, value)| lanes_of::<S>(&mut x, state).fill(value));
+                seen.iter().for_each(|&(state, value)| x[state] = value);
                 stepper.forget();
             }
             if sample == 0 {
-                for &(state, by) in begin {
-                    lanes_of::<S>(&mut x, state).iter_mut().for_each(|x| *x += by);
-                }
+                begin.iter().for_each(|&(state, by)| x[state] += by);
             }
-            if let Steps::Beside(other) = taken
-                && has_joined(&x, other.states.at(sample), &mut apart)
-            {
-                let rest = signals.iter_mut().zip(&other.signals);
-                rest.for_each(|(signal, other)| signal.extend_from_slice(&other[sample..]));
-                break;
-            }
-            stepper.sets.outputs(&x, inputs.at(first), &mut y);
-            for (signals, reading) in signals.chunks_exact_mut(S::LANES).zip(&self.readings) {
-                let read = match *reading {
-                    Reading::Output(output) => lanes_of::<S>(&mut y, output),
-                    Reading::State(state) => lanes_of::<S>(&mut x, state),
-                };
-                signals
-                    .iter_mut()
-                    .zip(read)
-                    .for_each(|(signal, read)| signal.push(*read));
+            stepper.outputs(&x, inputs.at(first), &mut y);
+            for (signal, reading) in signals.iter_mut().zip(&self.readings) {
+                signal.push(match *reading {
+                    Reading::Output(output) => y[output],
+                    Reading::State(state) => x[state],
+                });
             }
             states.extend_from_slice(&x);
             for node in (first..first + 2 * steps).step_by(2) {
                 let nodes = [node, node + 1, self.end(node, count)];
-                let inputs = nodes.map(|node| inputs.at(node));
-                halvings.push(match taken {
-                    Steps::Found => stepper.find(inputs, &mut x),
-                    Steps::Like(other) | Steps::Beside(other) => {
-                        let known = other.halvings[halvings.len()];
-                        stepper.follow(inputs, known, &mut x);
-                        known
-                    }
-                });
+                halvings.push(stepper.find(nodes.map(|node| inputs.at(node)), &mut x));
             }
         }
         Replayed {
@@ -314,24 +314,6 @@ impl Replayed {
             (end - first).abs().partial_cmp(&(REPEATED * most(state))) != Some(Ordering::Greater)
         })
     }
-}
-
-/// True if every state differs from that of another replay by a negligible share of its largest difference so far,
-/// which is updated.
-fn has_joined(x: &[f64], other: &[f64], apart: &mut [f64]) -> bool {
-    const TRACE: f64 = 1e-4;
-    let mut joined = true;
-    for ((x, other), apart) in x.iter().zip(other).zip(apart) {
-        let difference = (x - other).abs();
-        *apart = apart.max(difference);
-        joined &= difference <= TRACE * *apart;
-    }
-    joined
-}
-
-/// The values of one state or output in all sets.
-fn lanes_of<S: Sets>(of: &mut [f64], place: usize) -> &mut [f64] {
-    &mut of[place * S::LANES..][..S::LANES]
 }
 
 /// Whole steps: at most a millisecond, and at least two per sample, since the band may reach half the rate. They are

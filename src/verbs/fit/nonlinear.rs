@@ -39,9 +39,9 @@ pub(crate) struct Nonlinear {
     model: String,
     pub(crate) evidence: Evidence,
     pub(crate) parameters: Vec<ParameterFit>,
-    starts: usize,
+    pub(super) starts: usize,
     pub(crate) found: MultiStart,
-    profiles: Vec<ParameterProfile>,
+    pub(super) profiles: Vec<ParameterProfile>,
     seconds: f64,
 }
 

@@ -168,7 +168,11 @@ impl<'a> Planner<'a, '_> {
     }
 
     fn wrong<T>(&mut self, at: &Spanned<T>, key: &str, found: &str, expected: &str, remedy: &str) {
-        self.problems.push(self.read.problem(at, key, found, expected, remedy));
+        let problem = self.read.problem(at, key, found, expected, remedy);
+        // A target applies to several runs, in all of which it is as wrong.
+        if !self.problems.contains(&problem) {
+            self.problems.push(problem);
+        }
     }
 
     fn values(&self) -> &'a Values {
@@ -197,7 +201,14 @@ impl<'a> Planner<'a, '_> {
     /// The knob of a parameter that may change.
     fn parameter_knob(&mut self, name: &Spanned<String>, key: &str, knobs: &[Knob]) -> Option<usize> {
         let found = knobs.iter().position(|knob| knob.name == *name.get_ref());
-        if found.is_none() {
+        // Where its own table is wrong, this has been said.
+        let is_named = self
+            .read
+            .file
+            .parameters
+            .iter()
+            .any(|own| own.name.get_ref() == name.get_ref());
+        if found.is_none() && !is_named {
             let words = format!("`{}`", name.get_ref());
             self.wrong(
                 name,

@@ -44,12 +44,12 @@ impl<'a> FreeResponse<'a> {
         &self,
         reading: Reading,
         halvings: impl Iterator<Item = &'s [u8]>,
-        states: &[(usize, f64)],
+        states: &[usize],
     ) -> Vec<Vec<f64>> {
         let mut row = self.row(reading);
         let mut responses = vec![Vec::new(); states.len()];
         for steps in halvings {
-            for (response, &(state, _)) in responses.iter_mut().zip(states) {
+            for (response, &state) in responses.iter_mut().zip(states) {
                 response.push(row[state]);
             }
             steps.iter().for_each(|&halvings| self.step(&mut row, halvings));

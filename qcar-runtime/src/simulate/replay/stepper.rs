@@ -2,10 +2,10 @@
 //!
 //! Together with the derivative at the end of a step, which the next step needs anyway, the same stages form a
 //! third-order method. The difference of both methods is the controlled error (Hairer, Norsett, Wanner: Solving
-//! ordinary differential equations I, section II.4). The number of halvings of each step is stored: finite differences
-//! by parameters use the same steps.
+//! ordinary differential equations I, section II.4). The number of halvings of each step is stored: derivatives are
+//! those of the same steps.
 
-use super::sets::Sets;
+use crate::model::Model;
 use crate::solver::rk4;
 
 /// Largest error of a step, relative to the largest value of a state so far.
@@ -16,9 +16,9 @@ const MOST: u8 = 4;
 const ROOM: f64 = 1.0 / 32.0;
 
 /// Integrates step by step.
-pub struct Stepper<'a, S> {
-    /// The model with its parameter sets.
-    pub sets: &'a mut S,
+pub struct Stepper<'a> {
+    model: &'a dyn Model,
+    constants: Vec<f64>,
     /// Length of a whole step, s.
     length: f64,
     k: [Vec<f64>; 5],
@@ -35,11 +35,16 @@ pub struct Stepper<'a, S> {
     halvings: u8,
 }
 
-impl<'a, S: Sets> Stepper<'a, S> {
-    /// A stepper for the given numbers of states (of all sets together) and inputs, with steps of `length` (s).
-    pub fn new(sets: &'a mut S, (states, inputs): (usize, usize), length: f64) -> Self {
+impl<'a> Stepper<'a> {
+    /// A stepper for a model with these parameter values, with steps of `length` (s).
+    pub fn new(model: &'a dyn Model, p: &[f64], length: f64) -> Self {
+        let about = model.about();
+        let (states, inputs) = (about.states.len(), about.inputs.len());
+        let mut constants = vec![0.0; about.constants];
+        model.prepare(p, &mut constants);
         Self {
-            sets,
+            model,
+            constants,
             length,
             k: std::array::from_fn(|_| vec![0.0; states]),
             x: vec![0.0; states],
@@ -50,6 +55,11 @@ impl<'a, S: Sets> Stepper<'a, S> {
             largest: vec![0.0; states],
             halvings: 0,
         }
+    }
+
+    /// The outputs of the model.
+    pub fn outputs(&self, x: &[f64], u: &[f64], y: &mut [f64]) {
+        self.model.outputs(&self.constants, x, u, y);
     }
 
     /// Discards the stored derivative after the state was changed from outside.
@@ -65,7 +75,7 @@ impl<'a, S: Sets> Stepper<'a, S> {
         self.start[1].copy_from_slice(&self.k[4]);
         loop {
             let halvings = self.halvings;
-            let error = self.parts(inputs, halvings, x, Self::error);
+            let error = self.parts(inputs, halvings, x);
             if error <= 1.0 || halvings == MOST {
                 let sizes = self.largest.iter_mut().zip(&*x);
                 sizes.for_each(|(largest, x)| *largest = largest.max(x.abs()));
@@ -82,24 +92,19 @@ impl<'a, S: Sets> Stepper<'a, S> {
         }
     }
 
-    /// Takes a step with a given number of halvings.
-    pub fn follow(&mut self, inputs: [&[f64]; 3], halvings: u8, x: &mut [f64]) {
-        self.parts(inputs, halvings, x, |_, _, _| 0.0);
-    }
-
-    /// Takes all parts of a step. Calls `error` after each part with its length and returns the largest value.
-    fn parts(&mut self, inputs: [&[f64]; 3], halvings: u8, x: &mut [f64], error: fn(&Self, f64, &[f64]) -> f64) -> f64 {
+    /// Takes all parts of a step. Returns the largest error of a part.
+    fn parts(&mut self, inputs: [&[f64]; 3], halvings: u8, x: &mut [f64]) -> f64 {
         // A held input jumps from one sample to the next.
         self.knows_slope &= self.last == inputs[0];
         let error = if halvings == 0 {
             self.part(inputs, self.length, x);
-            error(self, self.length, x)
+            self.error(self.length, x)
         } else {
             let parts = 1_u32 << halvings;
             let length = self.length / f64::from(parts);
             let errors = (0..parts).map(|part| {
                 self.short_part(inputs, (part, parts), x);
-                error(self, length, x)
+                self.error(length, x)
             });
             // NaN must not count as a small error.
             errors.fold(0.0, |a, b| if b.is_nan() { f64::INFINITY } else { a.max(b) })
@@ -108,30 +113,26 @@ impl<'a, S: Sets> Stepper<'a, S> {
         if error.is_nan() { f64::INFINITY } else { error }
     }
 
-    /// Takes one part of a step. The inputs are interpolated by a parabola through start, middle and end of the step.
-    fn short_part(&mut self, [a, b, c]: [&[f64]; 3], (part, parts): (u32, u32), x: &mut [f64]) {
+    /// Takes one part of a step.
+    fn short_part(&mut self, nodes: [&[f64]; 3], (part, parts): (u32, u32), x: &mut [f64]) {
         let mut inputs = std::mem::take(&mut self.inputs);
-        for (half, into) in inputs.iter_mut().enumerate() {
-            let t = (f64::from(2 * part) + half as f64) / f64::from(2 * parts);
-            let weights = [(2.0 * t - 1.0) * (t - 1.0), 4.0 * t * (1.0 - t), t * (2.0 * t - 1.0)];
-            for (k, value) in into.iter_mut().enumerate() {
-                *value = weights[0] * a[k] + weights[1] * b[k] + weights[2] * c[k];
-            }
-        }
+        within(nodes, (part, parts), &mut inputs);
         self.part([&inputs[0], &inputs[1], &inputs[2]], self.length / f64::from(parts), x);
         self.inputs = inputs;
     }
 
     /// Takes a Runge-Kutta step of length `h` (s).
     fn part(&mut self, inputs: [&[f64]; 3], h: f64, x: &mut [f64]) {
-        let Self { sets, k, .. } = self;
+        let Self {
+            model, constants, k, ..
+        } = self;
         if self.knows_slope {
             k.swap(0, 4);
         } else {
-            sets.derivative(x, inputs[0], &mut k[0]);
+            model.derivative(constants, x, inputs[0], &mut k[0]);
         }
         let derivative = |part: f64, x: &[f64], k: &mut [f64]| {
-            sets.derivative(x, inputs[(2.0 * part) as usize], k);
+            model.derivative(constants, x, inputs[(2.0 * part) as usize], k);
         };
         rk4::step(derivative, h, x, k, &mut self.x);
         x.copy_from_slice(&self.x);
@@ -148,5 +149,16 @@ impl<'a, S: Sets> Stepper<'a, S> {
         (0..x.len())
             .map(error)
             .fold(0.0, |a, b| if b.is_nan() { b } else { a.max(b) })
+    }
+}
+
+/// The inputs at the start, the middle and the end of a part of a step: on a parabola through those of the step.
+pub fn within([a, b, c]: [&[f64]; 3], (part, parts): (u32, u32), inputs: &mut [Vec<f64>; 3]) {
+    for (half, into) in inputs.iter_mut().enumerate() {
+        let t = (f64::from(2 * part) + half as f64) / f64::from(2 * parts);
+        let weights = [(2.0 * t - 1.0) * (t - 1.0), 4.0 * t * (1.0 - t), t * (2.0 * t - 1.0)];
+        for (k, value) in into.iter_mut().enumerate() {
+            *value = weights[0] * a[k] + weights[1] * b[k] + weights[2] * c[k];
+        }
     }
 }

@@ -11,17 +11,9 @@ use crate::discover::observe::{
 use crate::model::{About, Model};
 use crate::response::parameters::Values;
 use crate::response::signal::SignalError;
-use crate::simulate::replay::reading;
+use crate::simulate::replay::{Direction, reading};
 use crate::simulate::{Between, Reading, Recorded, Replay};
 use crate::transmissibility::Point;
-
-/// Parameter change for a finite difference, relative to its value: about the square root of the rounding error of a
-/// replay.
-const DIFFERENCE: f64 = 1e-5;
-/// Change of the log amplitude of an input for a finite difference.
-const LOUDER: f64 = 1e-5;
-/// Change of an initial state for a finite difference, relative to its prior standard deviation.
-const OF_SPREAD: f64 = 1e-4;
 
 /// Predicts the sensors of a run with derivatives by the `free` parameters, by the amplitudes of its inputs unless `free`
 /// is empty, and by the initial states if `by_states` is true.
@@ -47,33 +39,14 @@ pub fn history(
     let replay = prepare(model, evidence, run, &sensors, &samples)?;
     let deviations = deviations(about, conditions.initial_states_of(run));
     let base = replay.run(p, &deviations);
-    let steps: Vec<f64> = free
-        .iter()
-        .map(|free| free.change(p[free.parameter], DIFFERENCE))
-        .collect();
-    let moved = |(free, step): (&Free, &f64)| {
-        let mut values = values.clone();
-        values.set(free.parameter, p[free.parameter] + step);
-        values.as_slice().to_vec()
-    };
-    let moved: Vec<_> = free.iter().zip(&steps).map(moved).collect();
-    let by_parameter = replay.like(&base, &moved, &deviations);
-    let mut louder = Vec::new();
-    for input in 0..if free.is_empty() { 0 } else { samples.len() } {
-        let samples = with_louder(&samples, input);
-        let replay = prepare(model, evidence, run, &sensors, &samples)?;
-        louder.extend(replay.like(&base, &[p.to_vec()], &deviations));
-    }
     let states = if by_states { unknown(about, spread) } else { Vec::new() };
-    let state_steps: Vec<_> = states.iter().map(|&(k, sigma)| (k, OF_SPREAD * sigma)).collect();
+    let directions = directions(model, values, free, inputs, &states);
+    let mut along = replay.along(&base, (p, &deviations), &directions).into_iter();
+    let names = states.iter().map(|&state| about.states[state].name.to_string());
     let replays = Replays {
-        by_parameter: steps.into_iter().zip(by_parameter).collect(),
-        by_drive: louder.into_iter().map(|signals| (LOUDER, signals)).collect(),
-        by_initial_states: states
-            .iter()
-            .map(|&(state, _)| about.states[state].name.to_string())
-            .zip(replay.by_initial_states(&base, p, &deviations, &state_steps))
-            .collect(),
+        by_parameter: along.by_ref().take(free.len()).collect(),
+        by_initial_states: names.zip(along.by_ref()).collect(),
+        by_drive: along.collect(),
         base: base.signals,
     };
     let predict = |(column, (&place, series)): (usize, (&usize, &&Series))| {
@@ -89,47 +62,57 @@ pub fn history(
     Ok(places.iter().zip(&series).enumerate().map(predict).collect())
 }
 
-/// Samples of the inputs, of which one is louder by [`LOUDER`].
-fn with_louder<'a>(samples: &[Cow<'a, [f64]>], input: usize) -> Vec<Cow<'a, [f64]>> {
-    let mut samples = samples.to_vec();
-    let own = samples[input].to_mut().iter_mut();
-    own.for_each(|sample| *sample *= 1.0 + LOUDER);
-    samples
+/// What the signals are differentiated by: the free parameters with those that follow them, the initial values of some states,
+/// and the amplitudes of the inputs.
+fn directions(
+    model: &dyn Model,
+    values: &Values,
+    free: &[Free],
+    inputs: &Recordings,
+    states: &[usize],
+) -> Vec<Direction> {
+    let about = model.about();
+    let together = |free: &Free| {
+        let all = 0..about.parameters.len();
+        Direction::Parameters(all.filter(|&own| values.leader(own) == free.parameter).collect())
+    };
+    let parameters = free.iter().map(together);
+    let states = states.iter().map(|&state| Direction::Initial(state));
+    let driven = inputs.signals.iter().filter(|_| !free.is_empty());
+    let amplitudes = driven.filter_map(|(point, _)| excitation_of(about, point).map(Direction::Amplitude));
+    parameters.chain(states).chain(amplitudes).collect()
 }
 
 /// Samples of the sensors of a run.
 type Signals = Vec<Vec<f64>>;
 
-/// Replays of a run at the parameters and beside them.
+/// A replay of a run and its derivatives.
 struct Replays {
     base: Signals,
-    /// For each free parameter, its step and the signals after it.
-    by_parameter: Vec<(f64, Signals)>,
-    /// For each input, the step of its log amplitude and the signals after it.
-    by_drive: Vec<(f64, Signals)>,
-    /// For each unknown initial state, its name and the derivatives of the signals.
+    /// By each free parameter.
+    by_parameter: Vec<Signals>,
+    /// By the log amplitude of each input.
+    by_drive: Vec<Signals>,
+    /// By each unknown initial state, with its name.
     by_initial_states: Vec<(String, Signals)>,
 }
 
 impl Replays {
     fn prediction(&self, series: usize, reader: &Reader, rate: f64) -> Prediction {
         let (value, by_sample) = reader.read(&self.base);
-        let slope = |(step, signals): &(f64, Signals)| -> Vec<Complex<f64>> {
-            let (moved, _) = reader.read(signals);
-            let pairs = moved.iter().zip(&value);
-            pairs
-                .map(|(moved, value)| Complex::from((moved - value) / step))
-                .collect()
-        };
-        let along = |(name, signals): &(String, Signals)| {
+        let slope = |signals: &Signals| -> Vec<Complex<f64>> {
             let (slope, _) = reader.read(signals);
-            (name.clone(), slope.into_iter().map(Complex::from).collect())
+            slope.into_iter().map(Complex::from).collect()
         };
         Prediction {
             series,
             slopes: self.by_parameter.iter().map(slope).collect(),
             by_drive: self.by_drive.iter().map(slope).collect(),
-            by_initial_states: self.by_initial_states.iter().map(along).collect(),
+            by_initial_states: self
+                .by_initial_states
+                .iter()
+                .map(|(name, signals)| (name.clone(), slope(signals)))
+                .collect(),
             delay: Some(Delay {
                 slope: by_sample.iter().map(|slope| Complex::from(-slope * rate)).collect(),
                 shares: Vec::new(),
@@ -262,12 +245,11 @@ fn deviations(about: &About, initial_states: &[(String, f64)]) -> Vec<(usize, f6
     deviations.collect()
 }
 
-/// States with an uncertain initial value, with its standard deviation.
-fn unknown(about: &About, spread: &Spread) -> Vec<(usize, f64)> {
+/// States with an uncertain initial value.
+fn unknown(about: &About, spread: &Spread) -> Vec<usize> {
     let states = about.states.iter().enumerate();
-    states
-        .filter_map(|(place, state)| Some((place, spread.sigma(state)?)))
-        .collect()
+    let uncertain = states.filter(|(_, state)| spread.sigma(state).is_some());
+    uncertain.map(|(place, _)| place).collect()
 }
 
 /// States that a sensor measures, with their values.

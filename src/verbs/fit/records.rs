@@ -1,0 +1,57 @@
+//! Transmissibilities beside a fit to all runs.
+//!
+//! A campaign with time histories alone, or with a nonlinear model, is fitted to its runs as they are. Its transmissibilities are then
+//! compared at the values of that fit.
+
+use qcar_runtime::campaign::Campaign;
+use qcar_runtime::fit::Plan;
+use qcar_runtime::model::About;
+
+use super::nonlinear::{self, Nonlinear};
+use super::{Choices, Fitted, is_by_transmissibilities};
+use crate::failure::Failure;
+
+/// Smallest correlation that is reported.
+const NOTEWORTHY: f64 = 0.9;
+
+/// The fit to all runs; `None` if the model is fitted to transmissibilities.
+///
+/// # Errors
+/// Fails as [`nonlinear::fit`] does.
+pub(super) fn fit(campaign: &Campaign, about: &About, choices: &Choices) -> Result<Option<Nonlinear>, Failure> {
+    if is_by_transmissibilities(campaign, about, choices) {
+        return Ok(None);
+    }
+    nonlinear::fit(campaign.clone(), choices).map(Some)
+}
+
+/// A plan that fits nothing, at the values of a fit.
+pub(super) fn known(mut plan: Plan, found: &Nonlinear) -> Plan {
+    for own in &mut plan.parameters {
+        let of_fit = found.parameters.iter().find(|other| other.name == own.name);
+        own.value = of_fit.map_or(own.value, |other| other.value);
+        own.fit = false;
+    }
+    plan
+}
+
+/// Takes over parameters, errors and notices of a fit to all runs.
+pub(super) fn take_over(fitted: &mut Fitted, found: Nonlinear) {
+    let correlations = found.correlations();
+    let (stop, starts) = (found.found.explanation.refit.stop, found.starts);
+    let fit = &mut fitted.fit;
+    fit.correlations = correlations
+        .iter()
+        .filter(|own| own.value.abs() > NOTEWORTHY)
+        .cloned()
+        .collect();
+    fit.all_correlations = correlations;
+    (fit.stopped, fit.stopped_because) = (stop, stop.sentence());
+    (fit.converged, fit.starts) = (stop.converged(), starts);
+    fit.minima.clear();
+    fit.parameters = found.parameters;
+    fitted.profiles = found.profiles;
+    let notices = &mut fitted.campaign.notices;
+    notices.extend(found.evidence.notices);
+    notices.push("the parameters are fitted to all runs as they are, and transmissibilities only compared".into());
+}
