@@ -13,7 +13,7 @@ pub fn convert_by(convert: Convert) {
     let _ = CONVERT.set(convert);
 }
 
-/// A quantity in a message. A precision such as `{:.4}` is that of its value in SI.
+/// A quantity in a message. A precision such as `{:.4}` is that of its value in SI; without one it has six digits.
 #[derive(Clone, Copy, Debug)]
 pub struct Shown<'a> {
     /// Value in the unit `si`.
@@ -32,7 +32,8 @@ impl fmt::Display for Shown<'_> {
         match self.converted() {
             Some((value, unit)) => write!(out, "{value} {unit}"),
             None => {
-                fmt::Display::fmt(&self.value, out)?;
+                let digits = out.precision().map_or_else(|| six_digits(self.value), |_| self.value);
+                fmt::Display::fmt(&digits, out)?;
                 self.unit(out)
             }
         }
@@ -52,10 +53,9 @@ impl fmt::LowerExp for Shown<'_> {
 }
 
 impl Shown<'_> {
-    /// To six digits, as a factor between units adds others.
     fn converted(&self) -> Option<(f64, &'static str)> {
         let (value, unit) = CONVERT.get().and_then(|convert| convert(self.value, self.si))?;
-        Some((format!("{value:.5e}").parse().unwrap_or(value), unit))
+        Some((six_digits(value), unit))
     }
 
     fn unit(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -64,4 +64,9 @@ impl Shown<'_> {
             si => write!(out, " {si}"),
         }
     }
+}
+
+/// A factor between units adds further digits, which say nothing.
+fn six_digits(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
 }
