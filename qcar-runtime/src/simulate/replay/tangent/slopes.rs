@@ -13,9 +13,11 @@ const WEIGHTS: [f64; STAGES] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
 
 /// Advances one block of directions through all parts: its numbers fill a vector, and stay in the cache from part to part.
 pub struct Advance<'a> {
+    /// The parts, with the Jacobians at their stages.
     pub jacobians: &'a Jacobians,
     /// Effects on the states, and the direct ones of this block at each point.
     pub of_states: (&'a Effects, &'a [Lanes]),
+    /// What is read.
     pub readings: &'a [Reading],
     /// Effects on the readings, and the direct ones of this block at each part that is read.
     pub of_readings: (&'a Effects, &'a [Lanes]),
