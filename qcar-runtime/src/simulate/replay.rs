@@ -164,7 +164,7 @@ impl<'a> Replay<'a> {
         (p, begin): (&[f64], &[(usize, f64)]),
         directions: &[Direction],
     ) -> Vec<Vec<Vec<f64>>> {
-        let mut tangent = Tangent::new(self.model, p, directions);
+        let mut tangent = Tangent::new(self.model, p, directions, &self.readings);
         let mut signals = Vec::new();
         for period in 1..=base.periods {
             let begin = Some(begin).filter(|_| period == 1);
@@ -195,7 +195,7 @@ impl<'a> Replay<'a> {
         for (sample, halvings) in base.halvings.chunks(steps).enumerate() {
             let restart = restarts.next_if(|(at, _)| *at == sample);
             if restart.is_some() || taken.len() >= AT_ONCE {
-                tangent.follow(&taken, &self.readings, &mut signals);
+                tangent.follow(&taken, &mut signals);
                 taken.clear();
             }
             for &(state, value) in restart.iter().flat_map(|(_, seen)| seen) {
@@ -217,7 +217,7 @@ impl<'a> Replay<'a> {
                 }
             }));
         }
-        tangent.follow(&taken, &self.readings, &mut signals);
+        tangent.follow(&taken, &mut signals);
         signals
     }
 

@@ -7,10 +7,21 @@
 //!
 //! Source: Hairer, Norsett, Wanner, Solving ordinary differential equations I, section I.14.
 
+// The motion at the stages, and the Jacobians there.
+mod stages;
+// What acts on the derivatives.
+mod effects;
+// The derivatives of the states from part to part.
+mod slopes;
+
 use super::Reading;
 use super::stepper::within;
-use crate::model::{InputKind, LANES, Lanes, Matrix, Model, Points};
+use crate::model::{LANES, Lanes, Model};
 use crate::solver::rk4;
+use crate::vectors::over_lanes;
+use effects::{Effects, fastest_decay};
+use slopes::Advance;
+use stages::{Jacobians, Part, STAGES};
 
 /// What a signal is differentiated by.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,13 +33,6 @@ pub enum Direction {
     /// The initial value of a state.
     Initial(usize),
 }
-
-/// Stages of a Runge-Kutta step.
-const STAGES: usize = 4;
-/// Position of each stage in its step.
-const AT: [f64; STAGES] = [0.0, 0.5, 0.5, 1.0];
-/// Weight of each stage.
-const WEIGHTS: [f64; STAGES] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
 
 /// Longest step times rate of decay of a state, for which the method still lets it decay.
 const LONGEST: f64 = 2.5;
@@ -57,242 +61,68 @@ impl Step<'_> {
     }
 }
 
-/// A nonzero of a Jacobian: its position in the model's list, its row, and its column.
-type Nonzero = (usize, usize, usize);
-
-/// A direct effect on a row: the nonzero with its position, its row, the input by which it is multiplied, and the direction.
-struct Source {
-    nonzero: usize,
-    row: usize,
-    input: Option<usize>,
-    lane: usize,
-}
-
-/// Effects on the derivatives of the states, or on the outputs.
-#[derive(Default)]
-struct Effects {
-    /// Of the states.
-    states: Vec<Nonzero>,
-    /// Of inputs whose amplitude changes.
-    inputs: Vec<Source>,
-    /// Of parameters.
-    parameters: Vec<Source>,
-}
-
-impl Effects {
-    fn of(model: &dyn Model, directions: &[Direction], of_outputs: bool) -> Self {
-        let about = model.about();
-        let (by_states, by_inputs) = match of_outputs {
-            true => (Matrix::C, Matrix::D),
-            false => (Matrix::A, Matrix::B),
-        };
-        let mut effects = Effects::default();
-        for (nonzero, entry) in about.matrices.iter().enumerate() {
-            let (row, column) = (usize::from(entry.row), usize::from(entry.column));
-            if entry.matrix == by_states {
-                effects.states.push((nonzero, row, column));
-            } else if entry.matrix == by_inputs {
-                let excitation = match about.inputs[column].kind {
-                    InputKind::Motion(place, _) | InputKind::Force(place) => usize::from(place),
-                    InputKind::Gravity => continue,
-                };
-                let lanes = lanes(directions, |own| *own == Direction::Amplitude(excitation));
-                effects.inputs.extend(lanes.map(|lane| Source {
-                    nonzero,
-                    row,
-                    input: Some(column),
-                    lane,
-                }));
-            }
-        }
-        for (nonzero, &(output, row, parameter)) in about.parameter_jacobian.iter().enumerate() {
-            let has =
-                |own: &Direction| matches!(own, Direction::Parameters(own) if own.contains(&usize::from(parameter)));
-            if output == of_outputs {
-                effects.parameters.extend(lanes(directions, has).map(|lane| Source {
-                    nonzero,
-                    row: usize::from(row),
-                    input: None,
-                    lane,
-                }));
-            }
-        }
-        effects
-    }
-
-    /// The derivatives of the rows along all directions at a point, from those of the states.
-    fn at(&self, jacobians: &Jacobians, point: usize, states: &[Lanes], rows: &mut [Lanes], blocks: usize) {
-        rows.fill([0.0; LANES]);
-        for source in &self.inputs {
-            let u = source.input.map_or(1.0, |input| jacobians.stages.u(point, input));
-            rows.as_flattened_mut()[source.place(blocks)] += jacobians.matrix(source.nonzero, point) * u;
-        }
-        for source in &self.parameters {
-            rows.as_flattened_mut()[source.place(blocks)] += jacobians.parameter(source.nonzero, point);
-        }
-        for &(nonzero, row, column) in &self.states {
-            let factor = jacobians.matrix(nonzero, point);
-            let of_column = &states[column * blocks..][..blocks];
-            add(factor, of_column, &mut rows[row * blocks..][..blocks]);
-        }
-    }
-
-    /// Fastest decay of a state at a point, 1/s, by its own value alone.
-    fn fastest_decay(&self, jacobians: &Jacobians, point: usize) -> f64 {
-        let own = self.states.iter().filter(|(_, row, column)| row == column);
-        own.fold(0.0, |most: f64, &(nonzero, ..)| {
-            most.max(-jacobians.matrix(nonzero, point))
-        })
-    }
-}
-
-impl Source {
-    fn place(&self, blocks: usize) -> usize {
-        self.row * blocks * LANES + self.lane
-    }
-}
-
-/// Adds a multiple of some rows to others.
-fn add(factor: f64, from: &[Lanes], into: &mut [Lanes]) {
-    for (into, from) in into.iter_mut().zip(from) {
-        for lane in 0..LANES {
-            into[lane] += factor * from[lane];
-        }
-    }
-}
-
-fn lanes(directions: &[Direction], has: impl Fn(&Direction) -> bool) -> impl Iterator<Item = usize> {
-    let with = directions.iter().enumerate().filter(move |(_, own)| has(own));
-    with.map(|(lane, _)| lane).collect::<Vec<_>>().into_iter()
-}
-
-/// States and inputs at the stages of the parts of some steps: a row of all points for each.
-#[derive(Default)]
-struct Stages {
-    /// Number of points.
-    count: usize,
-    x: Vec<f64>,
-    u: Vec<f64>,
-    parts: Vec<Part>,
-}
-
-/// A part of a step.
-struct Part {
-    /// The step, by its place among those that are followed together.
-    step: usize,
-    /// Length, s.
-    length: f64,
-    /// True if the readings are taken at its start.
-    is_read: bool,
-}
-
-impl Stages {
-    /// Makes room for some parts of a model with as many states and inputs.
-    fn prepare(&mut self, parts: usize, (states, inputs): (usize, usize)) {
-        self.count = STAGES * parts;
-        self.x.resize(states * self.count, 0.0);
-        self.u.resize(inputs * self.count, 0.0);
-        self.parts.clear();
-    }
-
-    fn put(&mut self, point: usize, x: &[f64], u: &[f64]) {
-        for (rows, values) in [(&mut self.x, x), (&mut self.u, u)] {
-            let places = rows.iter_mut().skip(point).step_by(self.count);
-            places.zip(values).for_each(|(place, value)| *place = *value);
-        }
-    }
-
-    fn u(&self, point: usize, input: usize) -> f64 {
-        self.u[input * self.count + point]
-    }
-}
-
-/// The Jacobians at the stages of some steps: a row of all points for each nonzero.
-#[derive(Default)]
-struct Jacobians {
-    stages: Stages,
-    matrices: Vec<f64>,
-    parameters: Vec<f64>,
-}
-
-impl Jacobians {
-    fn evaluate(&mut self, model: &dyn Model, p: &[f64]) {
-        let (stages, about) = (&self.stages, model.about());
-        let points = Points {
-            count: stages.count,
-            x: &stages.x,
-            u: &stages.u,
-        };
-        self.matrices.resize(about.matrices.len() * stages.count, 0.0);
-        self.parameters
-            .resize(about.parameter_jacobian.len() * stages.count, 0.0);
-        model.matrices_at(p, &points, &mut self.matrices);
-        model.parameter_jacobian_at(p, &points, &mut self.parameters);
-    }
-
-    fn matrix(&self, nonzero: usize, point: usize) -> f64 {
-        self.matrices[nonzero * self.stages.count + point]
-    }
-
-    fn parameter(&self, nonzero: usize, point: usize) -> f64 {
-        self.parameters[nonzero * self.stages.count + point]
-    }
-}
-
 /// A motion with its derivatives along some directions.
 pub struct Tangent<'a> {
     model: &'a dyn Model,
     p: &'a [f64],
     directions: &'a [Direction],
+    readings: &'a [Reading],
     constants: Vec<f64>,
     x: Vec<f64>,
-    /// Rows of all directions for each state: `blocks` rows of lanes.
+    /// Derivatives of the states, for each block of directions: a row of lanes for each state.
     slopes: Vec<Lanes>,
-    blocks: usize,
-    of_rates: Effects,
-    of_outputs: Effects,
+    of_states: Effects,
+    of_readings: Effects,
+    /// Nonzeros of A by which states depend on their own values.
+    own: Vec<usize>,
     jacobians: Jacobians,
     /// State before some steps.
     before: Vec<f64>,
-    /// How often each step is halved beyond its own halvings.
+    /// How often each step is halved beyond its own halvings, and how much further it must be.
     finer: Vec<u8>,
+    further: Vec<u8>,
     /// Workspace of the motion: slopes of the stages, the state at the end of a step, and inputs of a part of a step.
     k: [Vec<f64>; 5],
     x_end: Vec<f64>,
     inputs: [Vec<f64>; 3],
-    /// Workspace of the derivatives: those of the stages' slopes, of a stage's states, and of the outputs.
-    slope_k: [Vec<Lanes>; STAGES],
-    stage: Vec<Lanes>,
-    outputs: Vec<Lanes>,
+    /// Workspace of the derivatives: direct effects on the states and on the readings, the points at which these are taken, their
+    /// derivatives, and rows of a block.
+    direct: [Vec<Lanes>; 2],
+    read_at: Vec<usize>,
+    read: Vec<Lanes>,
+    work: [Vec<Lanes>; 3],
 }
 
 impl<'a> Tangent<'a> {
-    /// A motion that begins at rest.
-    pub fn new(model: &'a dyn Model, p: &'a [f64], directions: &'a [Direction]) -> Self {
+    /// A motion that begins at rest, and its readings.
+    pub fn new(model: &'a dyn Model, p: &'a [f64], directions: &'a [Direction], readings: &'a [Reading]) -> Self {
         let about = model.about();
         let (n, m, blocks) = (about.states.len(), about.inputs.len(), directions.len().div_ceil(LANES));
         let mut constants = vec![0.0; about.constants];
         model.prepare(p, &mut constants);
-        let rows = |count: usize| vec![[0.0; LANES]; count * blocks];
+        let of_states = Effects::on_states(model, directions);
         Self {
             model,
             p,
             directions,
+            readings,
             constants,
             x: vec![0.0; n],
-            slopes: rows(n),
-            blocks,
-            of_rates: Effects::of(model, directions, false),
-            of_outputs: Effects::of(model, directions, true),
+            slopes: vec![[0.0; LANES]; blocks * n],
+            own: of_states.own(),
+            of_states,
+            of_readings: Effects::on_readings(model, directions, readings),
             jacobians: Jacobians::default(),
             before: vec![0.0; n],
             finer: Vec::new(),
+            further: Vec::new(),
             k: std::array::from_fn(|_| vec![0.0; n]),
             x_end: vec![0.0; n],
             inputs: std::array::from_fn(|_| vec![0.0; m]),
-            slope_k: std::array::from_fn(|_| rows(n)),
-            stage: rows(n),
-            outputs: rows(about.outputs.len()),
+            direct: Default::default(),
+            read_at: Vec::new(),
+            read: Vec::new(),
+            work: std::array::from_fn(|_| vec![[0.0; LANES]; n]),
         }
     }
 
@@ -303,8 +133,11 @@ impl<'a> Tangent<'a> {
 
     /// Sets a state to a measured value, on which nothing depends.
     pub fn set(&mut self, state: usize, value: f64) {
+        let states = self.x.len();
         self.x[state] = value;
-        self.slopes[state * self.blocks..][..self.blocks].fill([0.0; LANES]);
+        for rows in self.slopes.chunks_exact_mut(states) {
+            rows[state] = [0.0; LANES];
+        }
     }
 
     /// Begins a motion with these deviations of its states. Its derivatives by initial states begin at one.
@@ -312,14 +145,14 @@ impl<'a> Tangent<'a> {
         deviations.iter().for_each(|&(state, by)| self.x[state] += by);
         for (lane, direction) in self.directions.iter().enumerate() {
             if let Direction::Initial(state) = *direction {
-                self.slopes.as_flattened_mut()[state * self.blocks * LANES + lane] += 1.0;
+                self.slopes[lane / LANES * self.x.len() + state][lane % LANES] += 1.0;
             }
         }
     }
 
     /// Takes the steps of some samples, and adds the derivatives of the readings to `signals`, a row for each reading and
     /// direction. All Jacobians of these steps are evaluated at once.
-    pub fn follow(&mut self, steps: &[Step<'_>], readings: &[Reading], signals: &mut [Vec<f64>]) {
+    pub fn follow(&mut self, steps: &[Step<'_>], signals: &mut [Vec<f64>]) {
         self.before.copy_from_slice(&self.x);
         self.finer.clear();
         self.finer.resize(steps.len(), 0);
@@ -333,34 +166,31 @@ impl<'a> Tangent<'a> {
             for (place, step) in steps.iter().enumerate() {
                 self.step(place, step);
             }
-            self.jacobians.evaluate(self.model, self.p);
+            self.jacobians.evaluate_matrices(self.model, self.p);
             if !self.refine() {
                 break;
             }
         }
-        for part in 0..self.jacobians.stages.parts.len() {
-            if self.jacobians.stages.parts[part].is_read {
-                self.read(part, readings, signals);
-            }
-            self.advance_slopes(part);
-        }
+        self.jacobians.evaluate_parameters(self.model, self.p);
+        self.advance_slopes();
+        self.store(signals);
     }
 
     /// Halves the steps further in which a state would not decay. False if there is none.
     fn refine(&mut self) -> bool {
-        let mut further = vec![0_u8; self.finer.len()];
+        self.further.clear();
+        self.further.resize(self.finer.len(), 0);
         for (place, part) in self.jacobians.stages.parts.iter().enumerate() {
-            let points = STAGES * place..STAGES * (place + 1);
-            let decays = points.map(|point| self.of_rates.fastest_decay(&self.jacobians, point));
-            let times = decays.fold(0.0, f64::max) * part.length / LONGEST;
-            let halvings = times.log2().ceil().clamp(0.0, f64::from(MOST - self.finer[part.step]));
-            further[part.step] = further[part.step].max(halvings as u8);
+            let times = fastest_decay(&self.own, &self.jacobians, place) * part.length / LONGEST;
+            if times > 1.0 {
+                let room = MOST - self.finer[part.step];
+                let halvings = times.log2().ceil().min(f64::from(room));
+                self.further[part.step] = self.further[part.step].max(halvings as u8);
+            }
         }
-        self.finer
-            .iter_mut()
-            .zip(&further)
-            .for_each(|(finer, further)| *finer += further);
-        further.iter().any(|&further| further > 0)
+        let finer = self.finer.iter_mut().zip(&self.further);
+        finer.for_each(|(finer, further)| *finer += further);
+        self.further.iter().any(|&further| further > 0)
     }
 
     /// Advances the motion by a step in its parts.
@@ -408,37 +238,42 @@ impl<'a> Tangent<'a> {
         self.x.copy_from_slice(&self.x_end);
     }
 
-    fn read(&mut self, part: usize, readings: &[Reading], signals: &mut [Vec<f64>]) {
-        let (blocks, count) = (self.blocks, self.directions.len());
-        let outputs = &mut self.outputs;
-        self.of_outputs
-            .at(&self.jacobians, STAGES * part, &self.slopes, outputs, blocks);
-        for (signals, reading) in signals.chunks_exact_mut(count).zip(readings) {
-            let (of, row) = match *reading {
-                Reading::Output(output) => (&self.outputs, output),
-                Reading::State(state) => (&self.slopes, state),
-            };
-            let slopes = of[row * blocks..][..blocks].as_flattened();
-            signals
-                .iter_mut()
-                .zip(slopes)
-                .for_each(|(signal, slope)| signal.push(*slope));
+    /// Advances the derivatives of the states, and takes those of the readings.
+    fn advance_slopes(&mut self) {
+        let (states, readings, blocks) = (self.x.len(), self.readings.len(), self.directions.len().div_ceil(LANES));
+        let stages = &self.jacobians.stages;
+        let points = stages.count();
+        let read = stages.parts.iter().enumerate().filter(|(_, part)| part.is_read);
+        self.read_at.clear();
+        self.read_at.extend(read.map(|(place, _)| STAGES * place));
+        let reads = self.read_at.len() * readings;
+        self.read.resize(blocks * reads, [0.0; LANES]);
+        let [direct, read_direct] = &mut self.direct;
+        self.of_states.direct(&self.jacobians, 0..points, blocks, direct);
+        let read_at = self.read_at.iter().copied();
+        self.of_readings.direct(&self.jacobians, read_at, blocks, read_direct);
+        for block in 0..blocks {
+            over_lanes(Advance {
+                jacobians: &self.jacobians,
+                of_states: (&self.of_states, &direct[block * points * states..][..points * states]),
+                readings: self.readings,
+                of_readings: (&self.of_readings, &read_direct[block * reads..][..reads]),
+                slopes: &mut self.slopes[block * states..][..states],
+                work: self.work.each_mut().map(Vec::as_mut_slice),
+                read: &mut self.read[block * reads..][..reads],
+            });
         }
     }
 
-    fn advance_slopes(&mut self, part: usize) {
-        let (blocks, h) = (self.blocks, self.jacobians.stages.parts[part].length);
-        for (stage, at) in AT.iter().enumerate() {
-            self.stage.copy_from_slice(&self.slopes);
-            if stage > 0 {
-                add(at * h, &self.slope_k[stage - 1], &mut self.stage);
-            }
-            let point = STAGES * part + stage;
-            let into = &mut self.slope_k[stage];
-            self.of_rates.at(&self.jacobians, point, &self.stage, into, blocks);
-        }
-        for (weight, k) in WEIGHTS.iter().zip(&self.slope_k) {
-            add(weight * h, k, &mut self.slopes);
+    /// Adds the derivatives of the readings to their signals.
+    fn store(&self, signals: &mut [Vec<f64>]) {
+        let (count, readings) = (self.directions.len(), self.readings.len());
+        let reads = self.read_at.len() * readings;
+        for (place, signal) in signals.iter_mut().enumerate() {
+            let (reading, lane) = (place / count, place % count);
+            let of_block = &self.read[lane / LANES * reads..][..reads];
+            let own = of_block.iter().skip(reading).step_by(readings);
+            signal.extend(own.map(|row| row[lane % LANES]));
         }
     }
 }
