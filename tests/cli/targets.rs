@@ -477,7 +477,7 @@ fn a_mistake_is_told_once() {
          [space]\ncuts = [[\"k_tire\", \"k_wheel_z\"]]",
     );
     assert!(
-        range.contains("`parameter.range`: found 215050 to 158950 N/m"),
+        range.contains("`parameter.range`: found 215050 N/m to 158950 N/m"),
         "{range}"
     );
     assert!(!range.contains("space.cuts"), "{range}");
