@@ -275,18 +275,18 @@ mod tests {
     }
 
     /// Friction has a small gain and ranks behind all direct entrants; one of its forms has none, and neither have the
-    /// stop and the nuisance.
+    /// stop and the nuisance, which enters at its second place too.
     #[test]
-    fn every_form_of_an_effect_is_fitted_at_its_best_place_and_every_place_and_nuisance_has_one() {
+    fn each_form_each_place_and_each_nuisance_enters() {
         let law = |k: usize| (candidate(&format!("law {k}"), "damper"), 100.0 - k as f64);
         let [in_damper, with_memory] = ["in_damper", "with_memory"].map(|form| Candidate {
             form: Some(form.into()),
             ..candidate("friction", "damper")
         });
-        let nuisance = Candidate {
+        let [bending, bending_again] = ["body", "damper"].map(|at| Candidate {
             nuisance: true,
-            ..candidate("bending", "body")
-        };
+            ..candidate("bending", at)
+        });
         let later = [
             (candidate("friction", "damper"), 5.0),
             (candidate("law 0", "spring"), 4.0),
@@ -294,7 +294,8 @@ mod tests {
             (in_damper, 2.0),
             (with_memory, -1.0),
             (candidate("stop", "top_mount"), 0.0),
-            (nuisance, 0.0),
+            (bending, 0.0),
+            (bending_again, -1.0),
         ];
         let all = (0..ENTRANTS).map(law).chain(later);
         let (candidates, gains): (Vec<Candidate>, Vec<f64>) = all.unzip();
@@ -306,6 +307,6 @@ mod tests {
         let screened: Vec<Screened> = gains.into_iter().enumerate().map(entry).collect();
         let later = entrants(&candidates, &screened).into_iter().skip(ENTRANTS);
         let later: Vec<usize> = later.map(|own| own.candidate - ENTRANTS).collect();
-        assert_eq!(later, [0, 1, 3, 4, 6]);
+        assert_eq!(later, [0, 1, 3, 4, 6, 7]);
     }
 }
