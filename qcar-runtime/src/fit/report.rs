@@ -15,7 +15,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// Smallest correlation that is reported.
-const NOTEWORTHY: f64 = 0.9;
+pub const NOTEWORTHY: f64 = 0.9;
 
 /// The result of a fit.
 #[derive(Clone, Debug, Serialize)]

@@ -5,14 +5,12 @@
 
 use qcar_runtime::campaign::Campaign;
 use qcar_runtime::fit::Plan;
+use qcar_runtime::fit::report::NOTEWORTHY;
 use qcar_runtime::model::About;
 
 use super::nonlinear::{self, Nonlinear};
 use super::{Choices, Fitted, is_by_transmissibilities};
 use crate::failure::Failure;
-
-/// Smallest correlation that is reported.
-const NOTEWORTHY: f64 = 0.9;
 
 /// The fit to all runs; `None` if the model is fitted to transmissibilities.
 ///
