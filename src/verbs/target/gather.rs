@@ -191,7 +191,7 @@ pub(super) fn gather(
         uncertainty: sureness,
         sensitivity: slopes
             .as_ref()
-            .map_or(vec![], |slopes| sensitivity(plan, slopes, &found)),
+            .map_or(Vec::new(), |slopes| sensitivity(plan, slopes, &found)),
         elasticities: slopes.map_or(Vec::new(), |slopes| elasticities(plan, &slopes, &found)),
         front: front.map(|front| front_answer(plan, &found, front)),
         space: space.map(|space| space_answer(plan, &space, cuts)),
