@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use super::misfit::Misfit;
 use super::refit::Refit;
-use crate::discover::observe::PredictError;
+use crate::campaign::Role;
+use crate::discover::observe::{Evidence, PredictError};
 use crate::model::About;
 use crate::response::parameters::Values;
 
@@ -55,5 +56,23 @@ impl Explanation {
     /// Mean square of the fitted residuals, at least 1; 1 if only noise is left.
     pub fn scatter(&self) -> f64 {
         self.refit.scatter()
+    }
+
+    /// Log likelihood of the runs of a role, up to a constant, for each part of the data; `None` without a discrepancy.
+    pub fn log_likelihoods(&self, role: Role, evidence: &Evidence) -> Option<Vec<f64>> {
+        let discrepancy = self.refit.discrepancy.as_ref()?;
+        let mut residual = Vec::new();
+        for (place, series) in evidence.of_role(role) {
+            let parts = if series.kind.complex() { 2 } else { 1 };
+            let own = &self.misfit.residuals[place];
+            let units = series
+                .sigma
+                .iter()
+                .zip(&series.noise)
+                .map(|(sigma, noise)| sigma / noise);
+            let units = units.flat_map(|unit| std::iter::repeat_n(unit, parts));
+            residual.extend(own.iter().zip(units).map(|(residual, unit)| residual * unit));
+        }
+        Some(discrepancy.carried_to(evidence, role).log_likelihoods(residual))
     }
 }

@@ -3,6 +3,7 @@
 use super::set::{Set, excess, explained_share, is_part, most_probable};
 use crate::campaign::Role;
 use crate::discover::observe::Evidence;
+use crate::discover::posterior::Explanation;
 
 /// The set itself, or the part of it that remains after unsupported effects are removed. A smaller set replaces the set
 /// if it predicts the held-out runs at least as well, if the additional effects explain too little of its excess
@@ -29,16 +30,16 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
     }
 }
 
-/// True if a set predicts the held-out runs better than another set, or if no run is held out.
+/// True if a set predicts the held-out runs better than another set with the same sensors, or if no run is held out.
+/// With sensors of its own, a set that lacks an effect can take them for so inaccurate that its prediction seems as good.
 pub fn predicts_better(set: &Set, other: &Set, evidence: &Evidence) -> bool {
     let none_held_out = evidence.of_role(Role::HeldOut).next().is_none();
-    none_held_out || log_score(set, evidence) > log_score(other, evidence)
+    let score = |own: &Explanation| log_score(own, evidence);
+    none_held_out || score(&set.explanation) > score(&other.with_sensors_of(set, evidence))
 }
 
 /// Logarithmic score: the log likelihood of the held-out runs, up to a constant.
-fn log_score(set: &Set, evidence: &Evidence) -> f64 {
-    *set.score.get_or_init(|| {
-        let parts = set.log_likelihoods(Role::HeldOut, evidence);
-        parts.map_or(f64::NEG_INFINITY, |parts| parts.iter().sum())
-    })
+fn log_score(own: &Explanation, evidence: &Evidence) -> f64 {
+    let parts = own.log_likelihoods(Role::HeldOut, evidence);
+    parts.map_or(f64::NEG_INFINITY, |parts| parts.iter().sum())
 }

@@ -23,7 +23,7 @@ pub fn probabilities(sets: &[&Set], evidence: &Evidence) -> Vec<f64> {
     if !best.is_some_and(|best| leaves_more_than_noise(best, evidence)) {
         return posterior(&whole);
     }
-    let of_fit = |set: &&Set| set.log_likelihoods(Role::Fit, evidence).unwrap_or_default();
+    let of_fit = |set: &&Set| set.explanation.log_likelihoods(Role::Fit, evidence).unwrap_or_default();
     let parts: Vec<Vec<f64>> = sets.iter().map(of_fit).collect();
     bagged(&whole, &parts)
 }

@@ -1,7 +1,7 @@
 //! A set of effects with its fit: its probability, its names and its remaining residual.
 
 use std::borrow::Cow;
-use std::sync::{Arc, Mutex, OnceLock};
+use std::sync::{Arc, Mutex};
 
 use super::assembly::{Assembly, Placed};
 use super::fidelity::Fidelity;
@@ -33,8 +33,6 @@ pub struct Set {
     pub rivals: Vec<Rival>,
     /// Its explanations with the sensors of other sets, by their log posteriors: see [`Self::with_sensors_of`].
     pub with_sensors: Arc<Mutex<Vec<(f64, Explanation)>>>,
-    /// Log likelihood of the held-out runs, computed on first use: see [`super::held_out`].
-    pub score: OnceLock<f64>,
 }
 
 impl Set {
@@ -49,7 +47,6 @@ impl Set {
             reduced: false,
             rivals: Vec::new(),
             with_sensors: Arc::default(),
-            score: OnceLock::new(),
         }
     }
 
@@ -118,24 +115,6 @@ impl Set {
     /// Prior odds of one more effect: even for the first.
     pub fn odds_of_another(&self, numbers: &Numbers) -> f64 {
         if self.names().is_empty() { 1.0 } else { numbers.further }
-    }
-
-    /// Log likelihood of the runs of a role, up to a constant, for each part of the data; `None` without a discrepancy.
-    pub fn log_likelihoods(&self, role: Role, evidence: &Evidence) -> Option<Vec<f64>> {
-        let discrepancy = self.explanation.refit.discrepancy.as_ref()?;
-        let mut residual = Vec::new();
-        for (place, series) in evidence.of_role(role) {
-            let parts = if series.kind.complex() { 2 } else { 1 };
-            let own = &self.explanation.misfit.residuals[place];
-            let units = series
-                .sigma
-                .iter()
-                .zip(&series.noise)
-                .map(|(sigma, noise)| sigma / noise);
-            let units = units.flat_map(|unit| std::iter::repeat_n(unit, parts));
-            residual.extend(own.iter().zip(units).map(|(residual, unit)| residual * unit));
-        }
-        Some(discrepancy.carried_to(evidence, role).log_likelihoods(residual))
     }
 
     /// Findings for all its effects, with `evidence` and `explained` left at 0.
@@ -242,10 +221,12 @@ pub fn leaves_more_than_noise(set: &Set, evidence: &Evidence) -> bool {
     square.is_nan() || square > 1.0 + ONE_SIDED * scatter
 }
 
-/// Share of the excess residual of `before` that `after` explains with the same sensors, on the held-out runs.
+/// Share of the excess residual of `before` that `after` explains with the same sensors, on the held-out runs. It is
+/// negative, and at least -1, if `after` leaves more.
 pub fn explained_share(before: &Set, after: &Set, evidence: &Evidence) -> f64 {
     let before = before.with_sensors_of(after, evidence);
-    1.0 - excess(&after.explanation, evidence) / excess(&before, evidence).max(f64::MIN_POSITIVE)
+    let left = excess(&after.explanation, evidence) / excess(&before, evidence).max(f64::MIN_POSITIVE);
+    (1.0 - left).max(-1.0)
 }
 
 /// Excess residual: the mean square of the normalised residual above that of noise, which is 1; at least 0. It is that of
