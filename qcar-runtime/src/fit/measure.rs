@@ -35,7 +35,7 @@ pub fn levels(
     for result in measured {
         match result {
             Ok(Measured::Level(level)) => levels.push(level),
-            Ok(Measured::FreeDecay(problem)) => free.push(problem),
+            Ok(Measured::FreeDecay(error)) => free.extend(error.problems),
             Err(error) => problems.extend(error.problems),
         }
     }
@@ -49,7 +49,7 @@ pub fn levels(
 enum Measured {
     Level(Level),
     /// Nothing, for this reason.
-    FreeDecay(Problem),
+    FreeDecay(InputError),
 }
 
 fn level(
@@ -64,8 +64,8 @@ fn level(
     one_road_moves(&history, about)?;
     let (excitation, reference) = match excitation(&history, about, &measured) {
         Ok(found) => found,
-        Err(problem) if matches!(run.test, Test::TimeHistory(_)) => return Ok(Measured::FreeDecay(problem)),
-        Err(problem) => return Err(problem.into()),
+        Err(error) if matches!(run.test, Test::TimeHistory(_)) => return Ok(Measured::FreeDecay(error)),
+        Err(error) => return Err(error),
     };
     let along: Vec<Point> = measured
         .into_iter()
@@ -138,7 +138,7 @@ fn one_road_moves(history: &History, about: &About) -> Result<(), InputError> {
 }
 
 /// The excitation of the model that a run records, and the point at which it was measured.
-fn excitation(history: &History, about: &About, measured: &[Point]) -> Result<(usize, Point), Problem> {
+fn excitation(history: &History, about: &About, measured: &[Point]) -> Result<(usize, Point), InputError> {
     for (place, excitation) in about.excitations.iter().enumerate() {
         if let Some(point) = measured
             .iter()
@@ -161,7 +161,8 @@ fn excitation(history: &History, about: &About, measured: &[Point]) -> Result<(u
         format!("channels of {}", measured.join(", ")),
         expected,
         remedy,
-    ))
+    )
+    .into())
 }
 
 /// The channels with these names, and the channels from the excitation.
