@@ -258,7 +258,10 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
         None => plan,
     };
     refuse_unseen(&model, &plan)?;
-    let levels = measure(&campaign, model.about(), choices)?;
+    let levels = match &of_all_runs {
+        Some(found) if !found.is_driven() => Vec::new(),
+        _ => measure(&campaign, model.about(), choices)?,
+    };
     let measured = outputs(model.about(), &levels);
     let wanted = Wanted::JacobianOf(&measured);
     let model = catalogue::of_campaign(&campaign, choices.model.as_deref(), wanted)?;
@@ -266,7 +269,7 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
     model.check_inertias(setup.values())?;
     campaign.notices.extend(notices::silent_runs(&campaign, &levels));
     if of_all_runs.is_none() {
-        campaign.notices.extend(notices::unused_tables(&campaign));
+        campaign.notices.extend(notices::unused_runs(&campaign, &levels));
     }
     campaign.notices.extend(out_of_range(model.about(), setup.values()));
     let profiled = match of_all_runs {

@@ -112,15 +112,11 @@ fn compare(of: &Fitted, truth: &Truth, within: f64) -> (String, bool) {
                 .collect(),
         );
     }
-    (
-        format!(
-            "{}\n{}\n{}",
-            heading(of, truth),
-            table.text(),
-            channels(&of.fit.channels)
-        ),
-        well,
-    )
+    let mut text = format!("{}\n{}", heading(of, truth), table.text());
+    if !of.fit.channels.is_empty() {
+        text += &format!("\n{}", channels(&of.fit.channels));
+    }
+    (text, well)
 }
 
 fn verdict(parameter: &ParameterFit, error: f64, within: f64) -> &'static str {

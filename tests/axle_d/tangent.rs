@@ -10,6 +10,7 @@ use qcar::workshop::Bench;
 use qcar_runtime::discover::candidate::Workshop;
 use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;
+use qcar_runtime::road::Road;
 use qcar_runtime::sensitivity::direction;
 use qcar_runtime::simulate::{Car, Drive, Method, Settings, Tangent, ride, tangent, variation};
 
@@ -31,6 +32,8 @@ fn settings(tolerance: f64) -> Settings {
 const EXACT: f64 = 1e-12;
 /// One at which a difference of rides has seven.
 const MOST_EXACT: f64 = 1e-14;
+/// Samples of an impact and the first of its after-shake.
+const IMPACT: usize = 501;
 
 /// The signals of a ride with parameter `k` moved by a part of itself, in the order of a [`Tangent`].
 fn moved(k: usize, part: f64, drive: &Drive<'_>) -> Vec<Vec<f64>> {
@@ -91,7 +94,7 @@ fn error(found: &[f64], exact: &[f64], signal: &[f64]) -> f64 {
 fn worst(height: f64, every: usize) -> (f64, usize, String) {
     let road = cleat::cleat(height);
     let drive = Drive {
-        samples: 501,
+        samples: IMPACT,
         ..cleat::drive(&road, 30.0 / 3.6)
     };
     let tangent = along_each(&drive, EXACT);
@@ -154,82 +157,115 @@ fn derivatives_of_a_linear_axle_on_the_grid_of_the_samples_are_those_of_its_ride
         }
     }
     assert!(worst < 1e-2, "{worst:e}");
-    assert_eq!(
-        variation(
-            &Car {
-                model: &General::new(),
-                parameters: car.parameters,
-                tyre: car.tyre,
-                load: car.load,
-                variant: car.variant
-            },
-            &drive,
-            &outputs,
-            &[(car.parameters, 1.0)],
-            FINE
-        ),
-        Ok(None)
-    );
 }
 
-/// The largest error of the derivatives of all outputs of a model by some of its parameters and those of an effect, against the
-/// central difference of two exact rides: a part of the signal, or of the derivative where that is larger.
-fn worst_on_the_grid(model: &dyn Model, added: &[(&str, f64)], points_a_sample: usize) -> f64 {
-    const PART: f64 = 1e-3;
-    let own = cleat::parameters();
-    let road = cleat::cleat(0.02);
-    let drive = cleat::drive(&road, 30.0 / 3.6);
-    let axle_d = AxleD
-        .about()
-        .parameters
-        .iter()
-        .map(|parameter| parameter.name.to_string());
-    let given: BTreeMap<String, f64> = axle_d
-        .zip(own.as_slice().iter().copied())
-        .chain(added.iter().map(|(name, value)| (name.to_string(), *value)))
-        .collect();
-    let values = Values::resolve(model.about(), &given, &BTreeMap::new()).unwrap();
-    let here = values.as_slice();
-    let Car {
-        tyre, load, variant, ..
-    } = cleat::car(&own);
-    let car = Car {
-        model,
-        parameters: here,
-        tyre,
-        load,
-        variant,
-    };
-    let of = |parameters: &[f64]| {
-        ride(&Car { parameters, ..car }, &drive, &settings(1e-10))
-            .expect("it rides")
-            .outputs
-    };
-    let still = of(here);
-    let outputs: Vec<usize> = (0..still.len()).collect();
-    let mut worst: f64 = 0.0;
-    for name in ["k_tire", "c_tire", "m_wheel", "k_sf_z", "c_wheel_x"]
-        .into_iter()
-        .chain(added.iter().map(|own| own.0))
-    {
-        let k = model
-            .about()
-            .parameters
-            .iter()
-            .position(|own| own.name == name)
-            .unwrap();
-        let moved = |part: f64| {
-            let mut moved = values.clone();
-            moved.set(k, here[k] * (1.0 + part));
-            moved.as_slice().to_vec()
+/// A ride of a model over a cleat that throws the wheel, with the values of axle D and those of an effect.
+struct Thrown<'m> {
+    model: &'m dyn Model,
+    values: Values,
+    road: Road,
+    samples: usize,
+}
+
+impl<'m> Thrown<'m> {
+    fn new(model: &'m dyn Model, added: &[(&str, f64)], samples: usize) -> Self {
+        let own = cleat::parameters();
+        let names = AxleD.about().parameters.iter().map(|parameter| &*parameter.name);
+        let all = names.zip(own.as_slice().iter().copied()).chain(added.iter().copied());
+        let has = |name: &str| model.about().parameters.iter().any(|own| own.name == name);
+        let given: BTreeMap<String, f64> = all
+            .filter(|(name, _)| has(name))
+            .map(|(name, value)| (name.to_string(), value))
+            .collect();
+        Self {
+            model,
+            values: Values::resolve(model.about(), &given, &BTreeMap::new()).unwrap(),
+            road: cleat::cleat(0.02),
+            samples,
+        }
+    }
+
+    fn car<'a>(&'a self, parameters: &'a [f64]) -> Car<'a, dyn Model + 'a> {
+        let own = cleat::parameters();
+        let Car {
+            tyre, load, variant, ..
+        } = cleat::car(&own);
+        Car {
+            model: self.model,
+            parameters,
+            tyre,
+            load,
+            variant,
+        }
+    }
+
+    fn drive(&self) -> Drive<'_> {
+        Drive {
+            samples: self.samples,
+            ..cleat::drive(&self.road, 30.0 / 3.6)
+        }
+    }
+
+    /// The parameters with one moved by a part of itself.
+    fn moved(&self, name: &str, part: f64) -> Vec<f64> {
+        let mut parameters = self.model.about().parameters.iter();
+        let k = parameters.position(|own| own.name == name).unwrap();
+        let mut moved = self.values.clone();
+        moved.set(k, self.values.as_slice()[k] * (1.0 + part));
+        moved.as_slice().to_vec()
+    }
+
+    fn outputs(&self, parameters: &[f64], tolerance: f64) -> Vec<Vec<f64>> {
+        let ride = ride(&self.car(parameters), &self.drive(), &settings(tolerance));
+        ride.expect("it rides").outputs
+    }
+
+    /// Derivatives of all outputs by the logarithm of a parameter, by differences of fourth order.
+    fn difference(&self, name: &str, part: f64, tolerance: f64) -> Vec<Vec<f64>> {
+        let rides = [1.0, -1.0, 2.0, -2.0].map(|times| self.outputs(&self.moved(name, times * part), tolerance));
+        let signals = 0..rides[0].len();
+        let at = |signal: usize, i: usize| {
+            let [up, down, far_up, far_down] = rides.each_ref().map(|ride| ride[signal][i]);
+            (8.0 * (up - down) - (far_up - far_down)) / (12.0 * part)
         };
-        let (up, down) = (of(&moved(PART)), of(&moved(-PART)));
-        let found = variation(&car, &drive, &outputs, &[(&moved(1e-4), 1e-4)], points_a_sample);
-        let found = found.expect("it rides").expect("it is linear beside the contact");
-        for (signal, found) in found[0].iter().enumerate() {
-            let pairs = up[signal].iter().zip(&down[signal]);
-            let difference: Vec<f64> = pairs.map(|(up, down)| (up - down) / (2.0 * PART)).collect();
-            worst = worst.max(error(found, &difference, &still[signal]).min(error(found, &difference, &difference)));
+        let samples = |signal: usize| (0..rides[0][signal].len()).map(|i| at(signal, i)).collect();
+        signals.map(samples).collect()
+    }
+
+    /// The same derivatives as a fit takes them.
+    fn variation(&self, name: &str, points_a_sample: usize) -> Vec<Vec<f64>> {
+        const PART: f64 = 1e-4;
+        let here = self.values.as_slice();
+        let outputs: Vec<usize> = (0..self.model.about().outputs.len()).collect();
+        let moved = self.moved(name, PART);
+        let (car, drive) = (self.car(here), self.drive());
+        let found = variation(&car, &drive, &outputs, &[(&moved, PART)], points_a_sample);
+        found.expect("it rides").expect("no point contact").remove(0)
+    }
+
+    /// The same derivatives, integrated with the motion.
+    fn tangent(&self, name: &str, tolerance: f64) -> Vec<Vec<f64>> {
+        let here = self.values.as_slice();
+        let moved = self.moved(name, 1.0);
+        let direction: Vec<f64> = moved.iter().zip(here).map(|(to, from)| to - from).collect();
+        let found = tangent(&self.car(here), &self.drive(), &settings(tolerance), &[direction]);
+        found.expect("it rides").slopes.remove(0)
+    }
+}
+
+/// The largest error of the derivatives that a fit takes, of all outputs of a model by some of its parameters and those of an effect,
+/// against differences: a part of the signal, or of the derivative where that is larger.
+fn worst_on_the_grid(model: &dyn Model, added: &[(&str, f64)], points_a_sample: usize) -> f64 {
+    let road = cleat::cleat(0.02);
+    let thrown = Thrown::new(model, added, cleat::drive(&road, 1.0).samples);
+    let still = thrown.outputs(thrown.values.as_slice(), 1e-10);
+    let own = ["k_tire", "c_tire", "m_wheel", "k_sf_z", "c_wheel_x"];
+    let mut worst: f64 = 0.0;
+    for name in own.into_iter().chain(added.iter().map(|own| own.0)) {
+        let found = thrown.variation(name, points_a_sample);
+        let difference = thrown.difference(name, 1e-3, 1e-10);
+        for ((found, difference), still) in found.iter().zip(&difference).zip(&still) {
+            worst = worst.max(error(found, difference, still).min(error(found, difference, difference)));
         }
     }
     worst
@@ -256,5 +292,48 @@ fn derivatives_on_the_grid_know_tyres_with_states_of_their_own() {
             let worst = worst_on_the_grid(with.model(), added, points_a_sample);
             assert!(worst < enough, "{effect} {form}, {points_a_sample} points: {worst:e}");
         }
+    }
+}
+
+/// The largest errors of the derivatives of a nonlinear axle by a parameter of the tyre and by those of an effect, against differences: with
+/// an exact ride, and as a fit takes them.
+fn worst_of_nonlinear(model: &dyn Model, added: &[(&str, f64)]) -> [f64; 2] {
+    // At a kink of a law a difference is of both sides: the smaller the part, the fewer such samples there are.
+    const PART: f64 = 4e-5;
+    let thrown = Thrown::new(model, added, IMPACT);
+    let still = thrown.outputs(thrown.values.as_slice(), EXACT);
+    let mut worst: [f64; 2] = [0.0; 2];
+    for name in ["k_tire"].into_iter().chain(added.iter().map(|own| own.0)) {
+        let difference = thrown.difference(name, PART, MOST_EXACT);
+        let found = [thrown.tangent(name, EXACT), thrown.variation(name, COARSE)];
+        for (signal, still) in still.iter().enumerate() {
+            for (worst, found) in worst.iter_mut().zip(&found) {
+                *worst = worst.max(error(&found[signal], &difference[signal], still));
+            }
+        }
+    }
+    worst
+}
+
+/// A friction with a state, a damper that saturates, and a stop with a kink. A fit integrates with a tolerance of 3e-6, as it does the
+/// motion. Quotients of two such rides with parameters that differ by 0.3 % were wrong by 2 to 11 %.
+#[test]
+fn derivatives_of_a_nonlinear_axle_are_the_limit_of_differences() {
+    let catalogue = Arc::new(effects::catalogue().map_err(|_| "the catalogue reads").unwrap());
+    let axle = compiled("axle_d").map_err(|_| "it compiles").unwrap().model;
+    let bench = Bench::new(axle, catalogue, Arc::new(BTreeMap::new()));
+    let friction = [("f_coulomb", 150.0), ("k_presliding", 4e5)];
+    let damper = [("c0", 3000.0), ("v0", 0.25)];
+    let stop = [("gap", 0.006), ("k_stop", 2e5)];
+    let cases = [
+        ("coulomb_friction", "damper", "in_damper", friction),
+        ("digressive_damper", "damper", "blow_off", damper),
+        ("bump_stop", "spring", "in_compression", stop),
+    ];
+    for (effect, place, form, added) in cases {
+        let with = bench.with(effect, place, Some(form)).expect("the effect has this form");
+        let [exact, fitted] = worst_of_nonlinear(with.model(), &added);
+        assert!(exact < 1e-6, "{effect}: {exact:e}");
+        assert!(fitted < 1e-2, "{effect}: {fitted:e}");
     }
 }

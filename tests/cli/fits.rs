@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use qcar_blind::hardware::Flaw;
 use qcar_blind::hidden::Hidden;
 use qcar_blind::programme::Programme;
 use qcar_blind::{Order, make};
@@ -119,6 +120,46 @@ fn a_nonlinear_model_is_fitted_to_its_truth() {
         "undetermined"
     );
     assert!(fit["gap"]["held_out"].as_f64() < Some(1.5), "{}", fit["gap"]);
+}
+
+/// Sweeps, K&C curves and cleats of an axle with a bump stop, by sensors with errors of every kind: the stated errors cover them.
+#[test]
+fn errors_of_a_nonlinear_fit_cover_those_of_the_sensors() {
+    let folder = tempfile::tempdir().unwrap();
+    let [campaign, model] = ["campaign", "with_stop.axle"].map(|name| folder.path().join(name));
+    let hidden = Hidden::new("bump_stop", "spring", &[("gap", 0.01), ("k_stop", 120e3)]);
+    let order = Order {
+        programme: Programme::fast(),
+        effects: vec![hidden],
+        flaws: vec![
+            Flaw::Pad,
+            Flaw::CrossAxis,
+            Flaw::Calibration,
+            Flaw::Drift,
+            Flaw::Hum,
+            Flaw::Jitter,
+        ],
+        ..Order::clean("a", 3221)
+    };
+    make(order, &campaign).unwrap();
+    let [campaign, model] = [&campaign, &model].map(|path| path.to_str().unwrap());
+    let form = ["--form", "in_compression", "--params", campaign, "--out", model];
+    succeeds(&[&["patch", "axle_a", "bump_stop", "--at", "spring"], &form[..]].concat());
+    let fit = fitted(&[campaign, "--model", model, "--starts", "2"]);
+    let truth = Truth::read(&Path::new(campaign).join("truth.toml")).unwrap();
+    let hidden = truth.effects.iter().flat_map(|effect| effect.parameters.iter());
+    let unseen = ["m_tm"];
+    let seen = truth.parameters.iter().chain(hidden);
+    let mut off = Vec::new();
+    for (name, truth) in seen.filter(|(name, _)| !unseen.contains(&&**name)) {
+        let own = &fit["parameters"][name];
+        let [value, error] = ["value", "stderr"].map(|key| own[key].as_f64().unwrap_or(f64::NAN));
+        assert!(error < 0.12 * truth, "{name}: {value} ± {error}, truth {truth}");
+        off.push(((value - truth) / error, name));
+    }
+    // One in twenty may lie beyond two standard errors, and of twenty one.
+    assert!(off.iter().all(|(off, _)| off.abs() < 3.0), "{off:?}");
+    assert!(off.iter().filter(|(off, _)| off.abs() > 2.0).count() <= 1, "{off:?}");
 }
 
 /// Where bristles damp, a model without that makes up for it by its top mount; with it, all is found. What is hidden is written by

@@ -218,18 +218,55 @@ fn score_compare_and_study_fit_the_samples_of_time_histories_alone() {
     }
 }
 
-/// A mass that is let go, or struck: nothing drives it, and no sensor shows how fast it is at first.
-#[test]
-fn a_record_that_starts_in_motion_needs_no_input() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().to_str().unwrap();
+/// A campaign of a mass that is let go, or struck: nothing drives it, and no sensor shows how fast it is at first.
+fn decaying_campaign(folder: &Path) {
     let parameters = parameter("c_body", 2.0, "N s/m", "range = [0.5, 20.0]\n")
         + &parameter("k_body", 700.0, "N/m", "range = [100.0, 2000.0]\n")
         + &parameter("m_body", 2.0, "kg", "").replace("true", "false");
     let decay = |begin| vec![("z", mass(begin, |_| 0.0))];
     let runs = [decay([0.02, 0.3]), decay([-0.03, 0.1]), decay([0.0, -0.5])];
     let runs: Vec<Columns> = runs.iter().map(Vec::as_slice).collect();
-    campaign(folder.path(), "one_mass", &parameters, "band_limited = false", &runs);
+    campaign(folder, "one_mass", &parameters, "band_limited = false", &runs);
+}
+
+/// They have no transmissibilities, and every verb that fits works without.
+#[test]
+fn score_compare_and_study_fit_free_decays() {
+    let folder = tempfile::tempdir().unwrap();
+    decaying_campaign(folder.path());
+    let path = folder.path().to_str().unwrap();
+    fs::write(
+        folder.path().join("truth.toml"),
+        "[parameters]\nc_body = 3.0\nk_body = 800.0\n",
+    )
+    .unwrap();
+    let score = succeeds(&["score", path, "--within", "0.2"]);
+    assert_eq!(score.matches(" well").count(), 2, "{score}");
+    let compared: Value = serde_json::from_str(&succeeds(&["compare", path, path, "--format", "json"])).unwrap();
+    let out = folder.path().join("out");
+    let study = succeeds(&["study", path, "--out", out.to_str().unwrap()]);
+    assert!(!study.contains("rig_fit") && study.contains("report.html"), "{study}");
+    let fit: Value = serde_json::from_str(&fs::read_to_string(out.join("fit/fit.json")).unwrap()).unwrap();
+    for (name, truth) in [("c_body", 3.0), ("k_body", 800.0)] {
+        let of_study = fit["parameters"][name]["value"].as_f64().unwrap();
+        let own = compared["parameters"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .find(|own| own["name"] == name);
+        let of_comparison = own.unwrap()["a"].as_f64().unwrap();
+        for value in [of_study, of_comparison] {
+            assert!((value / truth - 1.0).abs() < 2e-3, "{name}: {value}, not {truth}");
+        }
+    }
+}
+
+/// No sensor shows how fast it is at first.
+#[test]
+fn a_record_that_starts_in_motion_needs_no_input() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().to_str().unwrap();
+    decaying_campaign(folder.path());
     let answer = discovered(path);
     assert_eq!(answer["verdict"], "none", "{answer}");
     for role in ["fit", "held_out"] {

@@ -12,11 +12,12 @@ use nalgebra::Complex;
 /// Measures the channels of every sweep and time history of a campaign that excites the model.
 ///
 /// `wanted` names the channels to fit, as `near_to_far` of two measured places; without it, they are the channels
-/// across the force elements of the model (see [`across_links`]). `on_progress` receives the progress after each run.
+/// across the force elements of the model (see [`across_links`]). Beside other runs, a time history without any
+/// excitation is left out: it is a free decay. `on_progress` receives the progress after each run.
 ///
 /// # Errors
-/// Fails if [`Campaign::history`] or the estimator of transmissibilities fails, if a run records no excitation of the
-/// model, or if a wanted channel was not measured.
+/// Fails if [`Campaign::history`] or the estimator of transmissibilities fails, if a sweep, or each time history,
+/// records no excitation of the model, or if a wanted channel was not measured.
 pub fn levels(
     campaign: &Campaign,
     about: &About,
@@ -30,14 +31,25 @@ pub fn levels(
         .filter(|run| matches!(run.test, Test::Sweep(_) | Test::TimeHistory(_)))
         .collect();
     let measured = progress::map(&runs, on_progress, |run| level(campaign, run, about, wanted, options));
-    let (mut levels, mut problems) = (Vec::new(), Vec::new());
+    let (mut levels, mut problems, mut free) = (Vec::new(), Vec::new(), Vec::new());
     for result in measured {
         match result {
-            Ok(level) => levels.push(level),
+            Ok(Measured::Level(level)) => levels.push(level),
+            Ok(Measured::FreeDecay(error)) => free.extend(error.problems),
             Err(error) => problems.extend(error.problems),
         }
     }
+    if levels.is_empty() {
+        problems.extend(free);
+    }
     InputError::unless_empty(problems, Some(levels))
+}
+
+/// What a run gives.
+enum Measured {
+    Level(Level),
+    /// Nothing, for this reason.
+    FreeDecay(InputError),
 }
 
 fn level(
@@ -46,11 +58,15 @@ fn level(
     about: &About,
     wanted: Option<&[String]>,
     options: &Options,
-) -> Result<Level, InputError> {
+) -> Result<Measured, InputError> {
     let history = campaign.history(run)?;
     let measured = points(&history);
     one_road_moves(&history, about)?;
-    let (excitation, reference) = excitation(&history, about, &measured)?;
+    let (excitation, reference) = match excitation(&history, about, &measured) {
+        Ok(found) => found,
+        Err(error) if matches!(run.test, Test::TimeHistory(_)) => return Ok(Measured::FreeDecay(error)),
+        Err(error) => return Err(error),
+    };
     let along: Vec<Point> = measured
         .into_iter()
         .filter(|point| point.axis == reference.axis)
@@ -83,12 +99,12 @@ fn level(
     let observations = all.iter().zip(ratios).zip(differences);
     let observations = observations
         .map(|(((channel, fitted), ratio), differences)| observation(&history, channel, *fitted, ratio, differences));
-    Ok(Level {
+    Ok(Measured::Level(Level {
         name: run.name.clone(),
         role: run.role,
         excitation,
         observations: observations.collect(),
-    })
+    }))
 }
 
 /// A road counts as moving if its mean square is at least this share of the largest: a tenth of its amplitude.

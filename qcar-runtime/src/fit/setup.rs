@@ -40,7 +40,8 @@ impl<'a, M: Model + ?Sized> Setup<'a, M> {
         let mut problems = check_parameters(model, plan);
         let values = resolve(model, plan).map_err(|found| problems.extend(found)).ok();
         let (grids, targets, origins) = place_targets(model, plan, levels, &mut problems);
-        if targets.is_empty() && problems.is_empty() {
+        let fits = plan.parameters.iter().any(|parameter| parameter.fit);
+        if fits && targets.is_empty() && problems.is_empty() {
             problems.push(nothing_to_fit_to(plan));
         }
         let values = InputError::unless_empty(problems, values)?;
@@ -164,7 +165,7 @@ fn bounds<M: Model + ?Sized>(model: &M, plan: &Plan, free: &[usize]) -> Bounds {
 
 fn nothing_to_fit_to(plan: &Plan) -> Problem {
     let found = "no run with role `fit` that records an excitation and a response";
-    let remedy = "give a sweep or time history the role `fit`";
+    let remedy = "give a sweep or time history the role `fit`; a record without excitation is fitted by --all-runs";
     Problem::new(
         &plan.source,
         Place::Name("run".to_owned()),

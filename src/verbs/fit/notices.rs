@@ -1,6 +1,6 @@
 //! Notices on a fit.
 
-use qcar_runtime::campaign::{Campaign, Role, Run, Test};
+use qcar_runtime::campaign::{Campaign, Role, Test};
 use qcar_runtime::fit::{Fit, Level};
 
 /// A sentence if every fitted parameter is at a bound, so that the cost has no minimum within the ranges.
@@ -28,12 +28,19 @@ pub(super) fn silent_runs(campaign: &Campaign, levels: &[Level]) -> Vec<String> 
     silent.map(say).collect()
 }
 
-/// A sentence for each table of a dynamometer, which a linear fit does not use.
-pub(super) fn unused_tables(campaign: &Campaign) -> Vec<String> {
-    let is_unused = |run: &&Run| run.role == Role::Fit && matches!(run.test, Test::Dynamometer(_));
-    let say = |run: &Run| {
+/// A sentence for each fitted run that a fit to transmissibilities does not use: the table of a dynamometer, or a free decay.
+pub(super) fn unused_runs(campaign: &Campaign, levels: &[Level]) -> Vec<String> {
+    let fitted = campaign.runs.iter().filter(|run| run.role == Role::Fit);
+    let unused = fitted.filter_map(|run| {
+        let what = match run.test {
+            Test::Dynamometer(_) => "the table of a dynamometer",
+            Test::TimeHistory(_) if levels.iter().all(|level| level.name != run.name) => "a record without excitation",
+            _ => return None,
+        };
         let name = &run.name;
-        format!("{name}: a fit to transmissibilities does not use the table of a dynamometer; --all-runs does")
-    };
-    campaign.runs.iter().filter(is_unused).map(say).collect()
+        Some(format!(
+            "{name}: a fit to transmissibilities does not use {what}; --all-runs does"
+        ))
+    });
+    unused.collect()
 }

@@ -33,6 +33,14 @@ pub(super) fn known(mut plan: Plan, found: &Nonlinear) -> Plan {
     plan
 }
 
+impl Nonlinear {
+    /// True if a run records an excitation. Free decays have no transmissibilities.
+    pub(super) fn is_driven(&self) -> bool {
+        let mut runs = self.evidence.runs.iter();
+        runs.any(|run| !run.stimulus.references().is_empty())
+    }
+}
+
 /// Takes over parameters, errors and notices of a fit to all runs.
 pub(super) fn take_over(fitted: &mut Fitted, found: Nonlinear) {
     let correlations = found.correlations();

@@ -67,8 +67,10 @@ fn percent(of: &[Ratio], role: &str) -> Option<Percent> {
 
 /// Text for the terminal.
 pub fn text(of: &Study, summary: &Summary, folder: &Path) -> String {
-    let mut out = format!("{}: {}\n\n", of.fitted.campaign.name, summary.missing);
-    out += &fits(summary);
+    let mut out = format!("{}: {}\n", of.fitted.campaign.name, summary.missing);
+    if !summary.rig_fit.is_empty() {
+        let _ = write!(out, "\n{}", fits(summary));
+    }
     if let Some(track) = &of.track {
         let _ = write!(out, "\n{}{}", cleats(track), at_start(&track.at_start));
     }
