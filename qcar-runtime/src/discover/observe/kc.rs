@@ -6,6 +6,8 @@ mod travel;
 mod sine;
 // Model on a K&C rig.
 mod bench;
+// Its forces, with their derivatives.
+mod tangent;
 // Prediction of both tests.
 mod predicted;
 

@@ -16,8 +16,8 @@ use crate::simulate::{Car, Drive, Method, Settings, SimulateError, Variant, ride
 
 /// Integration method; its error is far below that of a tyre model.
 const METHOD: Method = Method::Adaptive(3e-6);
-/// Parameter change for a finite difference, relative to its value: large enough against the integration error, and
-/// small enough for the curvature.
+/// Parameter change for a finite difference over a point contact, relative to its value: large enough against the
+/// integration error, and small enough for the curvature.
 const DIFFERENCE: f64 = 3e-3;
 /// Gauss-Newton steps for the shift; the first one achieves nearly all.
 const STEPS: usize = 4;
@@ -107,8 +107,8 @@ fn accelerations(
     Ok(outputs.iter().map(|&output| ride.outputs[output].clone()).collect())
 }
 
-/// Derivatives of the outputs by each parameter that is `moved`: from the variational equations for a linear axle,
-/// otherwise from finite differences of passages.
+/// Derivatives of the outputs by each parameter that is `moved`: from the variational equations, or for a point contact,
+/// whose force jumps, from finite differences of passages.
 fn slopes(
     model: &dyn Model,
     (values, base): (&Values, &[Vec<f64>]),

@@ -44,34 +44,34 @@ pub struct Bench {
     /// Position of the wheel's displacement among the states.
     wheel: usize,
     /// Position of the wheel's velocity among the states.
-    wheel_speed: usize,
+    pub(super) wheel_speed: usize,
     /// Position of the body's velocity among the states.
-    held_speed: usize,
+    pub(super) held_speed: usize,
     /// Inputs of the ground under the wheel. It moves with the wheel, so the tyre has no force, which the rig does not
     /// measure.
     ground: Vec<(usize, Quantity)>,
-    free: Vec<FreeState>,
-    slopes: Vec<Slope>,
+    pub(super) free: Vec<FreeState>,
+    pub(super) slopes: Vec<Slope>,
     /// Entries in the row of the wheel.
-    of_wheel: Vec<Slope>,
+    pub(super) of_wheel: Vec<Slope>,
 }
 
 /// A state that the rig does not prescribe.
-struct FreeState {
-    place: usize,
+pub(super) struct FreeState {
+    pub place: usize,
     /// Position of its velocity if it belongs to a mass; `None` for an inner state.
-    speed: Option<usize>,
+    pub speed: Option<usize>,
 }
 
 /// An entry of `∂f/∂x` in a column of a free state.
-struct Slope {
+pub(super) struct Slope {
     /// Position among the nonzeros of the model.
-    entry: usize,
+    pub entry: usize,
     /// Row and column among the free states.
-    row: usize,
-    column: usize,
+    pub row: usize,
+    pub column: usize,
     /// True if the entry belongs to the velocity of the state.
-    of_speed: bool,
+    pub of_speed: bool,
 }
 
 impl Bench {
@@ -114,46 +114,20 @@ impl Bench {
         })
     }
 
-    /// Force on the wheel (N) at each instant of `path` that is read. The path begins at rest. The first row belongs to
-    /// the parameters `p`, the others to the sets `near`, which must be so close that one Newton step suffices. `None`
-    /// if a force on the wheel accelerates nothing.
-    pub fn forces(&self, model: &dyn Model, p: &[f64], near: &[Vec<f64>], path: &[Instant]) -> Option<Vec<Vec<f64>>> {
-        let mut first = Drive::new(self, model, p)?;
-        // Sets that differ in parameters without influence on the rig have the forces of the first.
-        let affected = (1..)
-            .zip(near)
-            .filter(|(_, other)| self.affects_force(model.about(), p, other));
-        let near_drives = affected.map(|(set, p)| Some((set, Drive::new(self, model, p)?)));
-        let mut near_drives = near_drives.collect::<Option<Vec<(usize, Drive)>>>()?;
-        let mut forces = vec![Vec::with_capacity(path.len()); 1 + near.len()];
-        for instant in path {
-            first.set_motion(instant);
-            let factor = first.follow(instant.step);
-            let read = forces[0].len();
-            if instant.is_read {
-                let force = first.force();
-                forces.iter_mut().for_each(|forces| forces.push(force));
-            }
-            for (set, drive) in &mut near_drives {
-                drive.set_motion(instant);
-                drive.follow_near(&first.x, factor.as_deref(), instant.step);
-                if instant.is_read {
-                    forces[*set][read] = drive.force();
-                }
-            }
-        }
-        Some(forces)
+    /// Accelerations by a unit force on the wheel. `None` if it accelerates nothing.
+    pub(super) fn of_unit_force(&self, model: &dyn Model, p: &[f64]) -> Option<Vec<f64>> {
+        of_unit_force(model, p, &self.on.wheel, self.axis.name())
     }
 
-    /// True if a difference between two parameter sets acts on the forces that the rig measures.
-    fn affects_force(&self, about: &About, p: &[f64], other: &[f64]) -> bool {
-        let held = [self.wheel_speed, self.held_speed];
-        let is_seen = |row: usize| held.contains(&row) || self.free.iter().any(|b| b.row() == row);
-        let mut jacobian = about.parameter_jacobian.iter();
-        jacobian.any(|&(is_output, row, parameter)| {
-            let parameter = usize::from(parameter);
-            !is_output && is_seen(usize::from(row)) && p[parameter] != other[parameter]
-        })
+    /// Acceleration of the wheel by a unit force on it and the opposite force on the body. By symmetry, a force on the
+    /// body accelerates the wheel through inerters as much as a force on the wheel accelerates the body.
+    pub(super) fn wheel_of(&self, of_unit: &[f64]) -> f64 {
+        of_unit[self.wheel_speed] - of_unit[self.held_speed]
+    }
+
+    /// Acceleration of a free mass over that of the wheel, by the force of the rig; zero for an inner state.
+    pub(super) fn share(&self, of_unit: &[f64], of: &FreeState) -> f64 {
+        of.speed.map_or(0.0, |speed| of_unit[speed] / self.wheel_of(of_unit))
     }
 }
 
@@ -178,29 +152,29 @@ fn slopes(about: &About, free: &[FreeState], row: impl Fn(usize) -> Option<usize
 
 impl FreeState {
     /// Row of the equation of motion that determines this state.
-    fn row(&self) -> usize {
+    pub fn row(&self) -> usize {
         self.speed.unwrap_or(self.place)
     }
 }
 
-/// A model with one parameter set, which follows the path.
-struct Drive<'a> {
-    bench: &'a Bench,
-    model: &'a dyn Model,
-    p: &'a [f64],
+/// A model that follows the path.
+pub(super) struct Drive<'a> {
+    pub bench: &'a Bench,
+    pub model: &'a dyn Model,
+    pub p: &'a [f64],
     constants: Vec<f64>,
     /// Accelerations by a unit force on the wheel; with inerters, other masses accelerate too.
-    of_unit: Vec<f64>,
-    x: Vec<f64>,
-    u: Vec<f64>,
-    dx: Vec<f64>,
-    nonzeros: Vec<f64>,
-    /// The last factorisation and its time step (s).
-    last_factor: Option<(f64, Rc<Factor>)>,
+    pub of_unit: Vec<f64>,
+    pub x: Vec<f64>,
+    pub u: Vec<f64>,
+    pub dx: Vec<f64>,
+    pub nonzeros: Vec<f64>,
+    /// The factorised Jacobian of a linear model, and its time step (s).
+    constant: Option<(f64, Rc<Factor>)>,
 }
 
 impl<'a> Drive<'a> {
-    fn new(bench: &'a Bench, model: &'a dyn Model, p: &'a [f64]) -> Option<Self> {
+    pub fn new(bench: &'a Bench, model: &'a dyn Model, p: &'a [f64]) -> Option<Self> {
         let about = model.about();
         let mut constants = vec![0.0; about.constants];
         model.prepare(p, &mut constants);
@@ -209,17 +183,17 @@ impl<'a> Drive<'a> {
             model,
             p,
             constants,
-            of_unit: of_unit_force(model, p, &bench.on.wheel, bench.axis.name())?,
+            of_unit: bench.of_unit_force(model, p)?,
             x: vec![0.0; about.states.len()],
             u: vec![0.0; about.inputs.len()],
             dx: vec![0.0; about.states.len()],
             nonzeros: vec![0.0; about.matrices.len()],
-            last_factor: None,
+            constant: None,
         })
     }
 
     /// Sets the wheel and the ground to an instant.
-    fn set_motion(&mut self, at: &Instant) {
+    pub fn set_motion(&mut self, at: &Instant) {
         let bench = self.bench;
         (self.x[bench.wheel], self.x[bench.wheel_speed]) = (at.travel, at.speed);
         for &(place, quantity) in &bench.ground {
@@ -232,8 +206,8 @@ impl<'a> Drive<'a> {
     }
 
     /// Updates the derivatives and returns the force of the rig.
-    fn force(&mut self) -> f64 {
-        self.update_derivatives();
+    pub fn force(&mut self) -> f64 {
+        self.model.derivative(&self.constants, &self.x, &self.u, &mut self.dx);
         self.rig_force()
     }
 
@@ -242,52 +216,39 @@ impl<'a> Drive<'a> {
         -self.dx[self.bench.wheel_speed] / self.wheel_of_unit()
     }
 
-    /// Acceleration of the wheel by a unit force on it and the opposite force on the body. By symmetry, a force on the
-    /// body accelerates the wheel through inerters as much as a force on the wheel accelerates the body.
-    fn wheel_of_unit(&self) -> f64 {
-        self.of_unit[self.bench.wheel_speed] - self.of_unit[self.bench.held_speed]
+    pub fn wheel_of_unit(&self) -> f64 {
+        self.bench.wheel_of(&self.of_unit)
     }
 
-    fn update_derivatives(&mut self) {
-        self.model.derivative(&self.constants, &self.x, &self.u, &mut self.dx);
-    }
-
-    /// Moves the free states over `h` s by Newton's method; returns the last factorisation. A linear model has a
-    /// constant Jacobian, so its first step is exact.
-    fn follow(&mut self, h: f64) -> Option<Rc<Factor>> {
+    /// Moves the free states over `h` s by Newton's method. A linear model has a constant Jacobian, so its first step is
+    /// exact.
+    pub fn follow(&mut self, h: f64) {
         let last = self.free_values();
-        let is_linear = self.model.about().linear;
-        let mut factor = self.last_factor.take();
-        factor = factor.filter(|(step, _)| is_linear && (step / h - 1.0).abs() < EQUAL);
         for _ in 0..STEPS {
             let residual = self.residual(&last, h);
-            if factor.is_none() || !is_linear {
-                factor = Factor::of(self.slope(h)).map(|own| (h, Rc::new(own)));
-            }
-            let step = factor.as_ref().and_then(|(_, factor)| factor.solve(residual));
+            let step = self.factor(h).and_then(|factor| factor.solve(residual));
             let Some(step) = step else { break };
-            if self.step(&step, &last, h) || is_linear {
+            if self.step(&step, &last, h) || self.model.about().linear {
                 break;
             }
         }
-        self.last_factor.clone_from(&factor);
-        factor.map(|(_, factor)| factor)
     }
 
-    /// Moves the free states in one Newton step, starting from the states `near` of a nearby parameter set.
-    fn follow_near(&mut self, near: &[f64], factor: Option<&Factor>, h: f64) {
-        let last = self.free_values();
-        for b in &self.bench.free {
-            self.x[b.place] = near[b.place];
+    /// The factorised Jacobian at the present states; `None` if there are no free states or an entry is not finite.
+    pub fn factor(&mut self, h: f64) -> Option<Rc<Factor>> {
+        let is_linear = self.model.about().linear;
+        if let Some((step, factor)) = &self.constant
+            && (step / h - 1.0).abs() < EQUAL
+        {
+            return Some(Rc::clone(factor));
         }
-        let residual = self.residual(&last, h);
-        if let Some(step) = factor.and_then(|factor| factor.solve(residual)) {
-            self.step(&step, &last, h);
-        }
+        let factor = Factor::of(self.slope(h)).map(Rc::new);
+        self.constant = factor.clone().filter(|_| is_linear).map(|factor| (h, factor));
+        factor
     }
 
     /// Values of the free states.
-    fn free_values(&self) -> Vec<f64> {
+    pub fn free_values(&self) -> Vec<f64> {
         self.bench.free.iter().map(|b| self.x[b.place]).collect()
     }
 
@@ -331,7 +292,7 @@ impl<'a> Drive<'a> {
             slope[(of.row, of.column)] += along(of);
         }
         for (row, b) in free.iter().enumerate() {
-            let share = b.speed.map_or(0.0, |speed| self.of_unit[speed] / self.wheel_of_unit());
+            let share = self.bench.share(&self.of_unit, b);
             for of in &self.bench.of_wheel {
                 slope[(row, of.column)] -= share * along(of);
             }
@@ -345,7 +306,7 @@ impl<'a> Drive<'a> {
 }
 
 /// Factorised Jacobian.
-enum Factor {
+pub(super) enum Factor {
     Regular(LU<f64, Dyn, Dyn>),
     /// Solved by the pseudo-inverse. It gives the smallest step, so a state that no force holds keeps its value.
     Singular(SVD<f64, Dyn, Dyn>),
@@ -366,7 +327,7 @@ impl Factor {
     }
 
     /// Newton step; `None` if it is not finite.
-    fn solve(&self, mut residual: DVector<f64>) -> Option<DVector<f64>> {
+    pub fn solve(&self, mut residual: DVector<f64>) -> Option<DVector<f64>> {
         let step = match self {
             Factor::Regular(factor) => factor.solve_mut(&mut residual).then_some(residual),
             Factor::Singular(factor) => factor.solve(&residual, f64::EPSILON).ok(),

@@ -9,8 +9,6 @@ use crate::discover::observe::{Evidence, Free, Kind, PredictError, Prediction, S
 use crate::model::Model;
 use crate::response::parameters::Values;
 
-/// Parameter change for a finite difference, relative to its value.
-const DIFFERENCE: f64 = 1e-5;
 /// Speed of a slow cycle, m/s: low enough for damper forces below one newton.
 const SLOW: f64 = 1e-4;
 /// Time step if the wheel does not move, s.
@@ -42,35 +40,29 @@ pub fn travel(
     };
     let not_on_rig = || PredictError::no_input(model.about(), of_run, &on.wheel);
     let bench = Bench::new(model.about(), on, axis).ok_or_else(not_on_rig)?;
-    let (moved, steps): (Vec<_>, Vec<_>) = free.iter().map(|free| moved(values, free)).unzip();
-    let forces = bench.forces(model, values.as_slice(), &moved, &course.path);
+    let parameters = 0..values.as_slice().len();
+    let tied = |free: &Free| {
+        parameters
+            .clone()
+            .filter(|&k| values.leader(k) == free.parameter)
+            .collect()
+    };
+    let directions: Vec<Vec<usize>> = free.iter().map(tied).collect();
+    let forces = bench.forces(model, values.as_slice(), &directions, &course.path);
     let forces = forces.ok_or_else(not_on_rig)?;
     let predict = |&(place, series): &(usize, &Series)| {
-        let read = |forces: &[f64]| course.read(series.kind, forces);
-        let value = read(&forces[0]);
-        let slope = |(forces, step): (&Vec<f64>, &f64)| {
-            let pairs = read(forces).into_iter().zip(&value);
-            pairs.map(|(moved, value)| (moved - value) / step).collect()
-        };
+        // What is read is linear in the forces, so its derivatives are read from theirs.
+        let mut read = forces.iter().map(|forces| course.read(series.kind, forces));
         Prediction {
             series: place,
-            slopes: forces[1..].iter().zip(&steps).map(slope).collect(),
-            value,
+            value: read.next().unwrap_or_default(),
+            slopes: read.collect(),
             delay: None,
             by_drive: Vec::new(),
             by_initial_states: Vec::new(),
         }
     };
     Ok(series.iter().map(predict).collect())
-}
-
-/// The parameters with a free one changed, and the change.
-fn moved(values: &Values, free: &Free) -> (Vec<f64>, f64) {
-    let at = values.as_slice()[free.parameter];
-    let step = free.change(at, DIFFERENCE);
-    let mut moved = values.clone();
-    moved.set(free.parameter, at + step);
-    (moved.as_slice().to_vec(), step)
 }
 
 /// The path of a rig in a run, and how its forces are read.
