@@ -84,9 +84,9 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let subject = Subject::of(&arguments.first, &arguments.second)?;
     let comparison = gather::gather(&subject, arguments)?;
     let contents = contents::Contents::of(&comparison);
-    let json = json::line(&contents.result);
+    let json = || json::line(&contents.result);
     if let Some(folder) = &arguments.out {
-        put(folder, "compare.json", &json)?;
+        put(folder, "compare.json", &json())?;
         put(folder, "parameters.csv", &render::parameters_csv(&comparison))?;
         put(folder, "transmissibility.csv", &render::ratios_csv(&comparison))?;
         put(folder, "cleat.csv", &render::passages_csv(&comparison))?;
@@ -99,6 +99,6 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     }
     Ok(match arguments.format {
         Format::Text => prose(&render::text(&comparison, &contents.result, arguments.out.as_deref())),
-        Format::Json => json,
+        Format::Json => json(),
     })
 }
