@@ -96,18 +96,9 @@ pub fn space(task: &Task<'_>, known: &[Vec<f64>], settings: Settings, on_progres
     let real = task.without_margins();
     let start = start(task, known, &mut random, settings.samples);
     let start = start.or_else(|| self::start(&real, known, &mut random, settings.samples))?;
-    let mut sides: Sides = start.iter().map(|place| [*place; 2]).collect();
-    let mut evaluated = 2 * settings.samples;
+    let sides = start.iter().map(|place| [*place; 2]).collect();
     let rounds = settings.rounds + FINAL_ROUNDS;
-    for round in 0..settings.rounds {
-        on_progress(round, rounds);
-        let growth = GROWTH * (1.0 - 0.9 * round as f64 / settings.rounds as f64);
-        let before = sides.clone();
-        grow(&mut sides, growth);
-        let drawn = draw(task, &sides, settings.samples, &mut random);
-        evaluated += drawn.len();
-        sides = trimmed(&sides, &drawn).unwrap_or(before);
-    }
+    let sides = widened(task, sides, settings, &mut random, &|round| on_progress(round, rounds));
     // The smallest number of good designs without a bad one that shows the probability at 95 % confidence; a multiple
     // of it allows for bad ones.
     let judges = settings
@@ -115,20 +106,57 @@ pub fn space(task: &Task<'_>, known: &[Vec<f64>], settings: Settings, on_progres
         .max((2.0 * 3.0 / (1.0 - settings.probability).max(1e-4)).ceil() as usize);
     let confirming = CONFIRMING * judges;
     let enough = probably_enough(confirming, settings.probability);
-    for round in 0..FINAL_ROUNDS {
+    let (sides, evaluated) = adjusted(&real, sides, (confirming, enough), &mut random, &|round| {
         on_progress(settings.rounds + round, rounds);
+    });
+    on_progress(rounds, rounds);
+    Some(confirmed(
+        &real,
+        sides,
+        (settings.probability, confirming),
+        (2 + settings.rounds) * settings.samples + evaluated,
+        &mut random,
+    ))
+}
+
+/// The first rounds: the box grows on all sides, and bad designs are cut off.
+fn widened(
+    task: &Task<'_>,
+    mut sides: Sides,
+    settings: Settings,
+    random: &mut SplitMix,
+    on_round: &dyn Fn(usize),
+) -> Sides {
+    for round in 0..settings.rounds {
+        on_round(round);
+        let growth = GROWTH * (1.0 - 0.9 * round as f64 / settings.rounds as f64);
+        let before = sides.clone();
+        grow(&mut sides, growth);
+        let drawn = draw(task, &sides, settings.samples, random);
+        sides = trimmed(&sides, &drawn).unwrap_or(before);
+    }
+    sides
+}
+
+/// The final rounds: the box becomes the largest one around it in which enough designs are good. Also returns the number
+/// of evaluated designs.
+fn adjusted(
+    task: &Task<'_>,
+    mut sides: Sides,
+    (count, enough): (usize, f64),
+    random: &mut SplitMix,
+    on_round: &dyn Fn(usize),
+) -> (Sides, usize) {
+    for round in 0..FINAL_ROUNDS {
+        on_round(round);
         let around = grown(&sides, SURROUNDINGS);
         if around == sides {
-            break;
+            return (sides, round * count);
         }
-        let drawn = turned_out(&real, &around, confirming, &mut random);
-        evaluated += drawn.len();
+        let drawn = draw_uncertain(task, &around, count, random);
         match largest_within(&sides, &around, &drawn, enough) {
             Some(STEPS) => sides = around,
-            Some(step) => {
-                sides = between(&sides, &around, step);
-                break;
-            }
+            Some(step) => return (between(&sides, &around, step), (round + 1) * count),
             None if task.designs.is_certain() => {
                 let inside: Vec<RandomDesign> = drawn.into_iter().filter(|own| holds(&sides, &own.places)).collect();
                 sides = trimmed(&sides, &inside).unwrap_or_else(|| shrunk(&sides));
@@ -137,14 +165,7 @@ pub fn space(task: &Task<'_>, known: &[Vec<f64>], settings: Settings, on_progres
             None => sides = shrunk(&shrunk(&sides)),
         }
     }
-    on_progress(rounds, rounds);
-    Some(confirmed(
-        &real,
-        sides,
-        (settings.probability, confirming),
-        evaluated,
-        &mut random,
-    ))
+    (sides, FINAL_ROUNDS * count)
 }
 
 /// Judges a box by new designs. If too many are bad, the box shrinks until enough are good; then it grows step by step
@@ -159,7 +180,7 @@ fn confirmed(
     random: &mut SplitMix,
 ) -> Space {
     let mut judge = |sides: &Sides| {
-        let drawn = turned_out(task, sides, confirming, random);
+        let drawn = draw_uncertain(task, sides, confirming, random);
         evaluated += drawn.len();
         judged(task, sides, &drawn, evaluated)
     };
@@ -265,7 +286,7 @@ fn draw(task: &Task<'_>, sides: &Sides, count: usize, random: &mut SplitMix) -> 
 }
 
 /// Random designs with random results.
-fn turned_out(task: &Task<'_>, sides: &Sides, count: usize, random: &mut SplitMix) -> Vec<RandomDesign> {
+fn draw_uncertain(task: &Task<'_>, sides: &Sides, count: usize, random: &mut SplitMix) -> Vec<RandomDesign> {
     if task.designs.is_certain() {
         return draw(task, sides, count, random);
     }

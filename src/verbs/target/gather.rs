@@ -150,20 +150,8 @@ pub(super) fn gather(
     seed: u64,
     wanted: [bool; 2],
 ) -> Option<Answer> {
-    let axle = Axle {
-        ground,
-        values: subject.values.clone(),
-        moves: plan.moves.clone(),
-        knobs: plan.knobs.len(),
-        means: plan.means.clone(),
-        chance,
-    };
-    let mut task = Task {
-        designs: &axle,
-        knobs: plan.knobs.clone(),
-        limits: plan.limits.clone(),
-        couplings: plan.couplings.clone(),
-    };
+    let axle = plan.axle(subject, ground, chance);
+    let mut task = plan.task(&axle);
     let intervals = |design: &[f64]| design_uncertainty::intervals(subject, (ground, &axle), plan, design);
     let found = design_uncertainty::design(&mut task, &axle, seed, plan.sure)?;
     let known = [found.design.clone()];

@@ -15,7 +15,8 @@ use qcar_runtime::error::{InputError, Problem};
 use qcar_runtime::mean::mean;
 use qcar_runtime::metric::{Ground, Reading};
 use qcar_runtime::response::parameters::Values;
-use qcar_runtime::target::{Coupling, Knob, Limit, Move, Sense};
+use qcar_runtime::sensitivity::Chance;
+use qcar_runtime::target::{Axle, Coupling, Knob, Limit, Move, Sense, Task};
 use toml::Spanned;
 
 use super::file::{Amount, AmountKind, Read};
@@ -125,6 +126,28 @@ impl Plan {
             sure,
             generations: generations.unwrap_or(40),
         })
+    }
+
+    /// The designs of the task: the subject with its parameters at values of the knobs.
+    pub fn axle<'a>(&self, subject: &Subject, ground: &'a Ground<'a>, chance: Chance) -> Axle<'a> {
+        Axle {
+            ground,
+            values: subject.values.clone(),
+            moves: self.moves.clone(),
+            knobs: self.knobs.len(),
+            means: self.means.clone(),
+            chance,
+        }
+    }
+
+    /// The task for these designs.
+    pub fn task<'a>(&self, designs: &'a Axle<'_>) -> Task<'a> {
+        Task {
+            designs,
+            knobs: self.knobs.clone(),
+            limits: self.limits.clone(),
+            couplings: self.couplings.clone(),
+        }
     }
 }
 
