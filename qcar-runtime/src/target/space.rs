@@ -1,4 +1,5 @@
-//! The solution space: the largest box of knobs' intervals in which all limits hold with a stated probability.
+//! The solution space: the largest box of design variables' intervals in which all limits hold with a stated
+//! probability.
 //!
 //! Zimmermann and von Hoessle, "Computing solution spaces for robust design", Int. J. Numer. Meth. Engng 94 (2013)
 //! 290–307. A box grows to all sides, designs are drawn in it, and parts with bad designs are cut off so that as few
@@ -39,7 +40,7 @@ impl Default for Settings {
 /// A box of intervals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Space {
-    /// The interval of each knob.
+    /// The interval of each design variable.
     pub intervals: Vec<[f64; 2]>,
     /// Share of good designs among those that judge it.
     pub probability: f64,
@@ -57,15 +58,15 @@ pub struct Space {
 const GROWTH: f64 = 0.08;
 /// Good designs from which cuts are tried.
 const ANCHORS: usize = 16;
-/// Largest number of final rounds of growth. This and the other sizes of steps and rounds below are choices: they affect
-/// the time of the search and the size of the box, not whether it is confirmed.
+/// Largest number of final rounds of growth. This and the other sizes of steps and rounds below are choices: they
+/// affect the time of the search and the size of the box, not whether it is confirmed.
 const FINAL_ROUNDS: usize = 8;
 /// Growth of a final round at each end of each interval, relative to its length.
 const SURROUNDINGS: f64 = 0.05;
 /// Number of steps in which that growth is examined.
 const STEPS: usize = 20;
-/// Number of designs that confirm a box, relative to the smallest number that could. With fewer designs a larger share of
-/// them must be good, so the box becomes smaller.
+/// Number of designs that confirm a box, relative to the smallest number that could. With fewer designs a larger share
+/// of them must be good, so the box becomes smaller.
 const CONFIRMING: usize = 8;
 /// Level of significance: a worse box would give as many good designs by chance once in twenty times.
 const BY_CHANCE: f64 = 0.05;
@@ -78,7 +79,7 @@ const CONFIRMATIONS: usize = 16;
 /// Largest number of larger boxes that are judged after that.
 const FURTHER_ONES: usize = 4;
 
-/// A box in positions of the knobs, 0 to 1.
+/// A box in positions of the design variables, 0 to 1.
 type Sides = Vec<[f64; 2]>;
 
 /// A drawn design.
@@ -138,8 +139,8 @@ fn widened(
     sides
 }
 
-/// The final rounds: the box becomes the largest one around it in which enough designs are good. Also returns the number
-/// of evaluated designs.
+/// The final rounds: the box becomes the largest one around it in which enough designs are good. Also returns the
+/// number of evaluated designs.
 fn adjusted(
     task: &Task<'_>,
     mut sides: Sides,
@@ -235,7 +236,7 @@ fn between(sides: &Sides, around: &Sides, step: usize) -> Sides {
 
 /// The good design that is furthest inside all limits.
 fn start(task: &Task<'_>, known: &[Vec<f64>], random: &mut SplitMix, samples: usize) -> Option<Vec<f64>> {
-    let all = vec![[0.0, 1.0]; task.knobs.len()];
+    let all = vec![[0.0, 1.0]; task.variables.len()];
     let mut drawn = draw(task, &all, 2 * samples, random);
     drawn.extend(known.iter().map(|design| drawn_at(task, task.places(design))));
     let inside = |own: &RandomDesign| {
@@ -328,8 +329,8 @@ fn trimmed(sides: &Sides, drawn: &[RandomDesign]) -> Option<Sides> {
     boxes.max_by(|a, b| log_volume(a).total_cmp(&log_volume(b)))
 }
 
-/// The box around an anchor with each bad design cut off, along the knob that loses the fewest good designs, then the
-/// least volume.
+/// The box around an anchor with each bad design cut off, along the design variable that loses the fewest good designs,
+/// then the least volume.
 fn without(sides: &Sides, anchor: &[f64], good: &[&RandomDesign], bad: &[&RandomDesign]) -> Sides {
     let mut sides = sides.clone();
     let mut order: Vec<&&RandomDesign> = bad.iter().collect();
@@ -357,10 +358,10 @@ fn without(sides: &Sides, anchor: &[f64], good: &[&RandomDesign], bad: &[&Random
 }
 
 /// Position of a cut between a bad design and the good ones on the anchor's side: halfway to the nearest.
-fn cut_at(good: &[&&RandomDesign], bad: f64, anchor: f64, knob: usize) -> f64 {
+fn cut_at(good: &[&&RandomDesign], bad: f64, anchor: f64, variable: usize) -> f64 {
     let inside = good
         .iter()
-        .map(|own| own.places[knob])
+        .map(|own| own.places[variable])
         .filter(|place| (place - bad) * (anchor - bad) > 0.0);
     let nearest = inside
         .chain([anchor])
@@ -391,10 +392,10 @@ fn judged(task: &Task<'_>, sides: &Sides, drawn: &[RandomDesign], evaluated: usi
     let each = 0..task.limits.len() + task.couplings.len();
     Space {
         intervals: task
-            .knobs
+            .variables
             .iter()
             .zip(sides)
-            .map(|(knob, side)| side.map(|place| knob.at(place)))
+            .map(|(variable, side)| side.map(|place| variable.at(place)))
             .collect(),
         probability: good as f64 / count as f64,
         at_least: lower_bound(good, count),

@@ -6,9 +6,8 @@ use crate::program::schedule::Compiled;
 
 /// Sizes, and the positions of states, inputs and outputs.
 pub fn sizes(about: &About) -> String {
-    let size = |name: &str, what: &str, size: usize| {
-        format!("/// How many {what} there are.\npub const {name}: usize = {size};\n")
-    };
+    let size =
+        |name: &str, what: &str, size: usize| format!("/// Number of {what}.\npub const {name}: usize = {size};\n");
     [
         size("PARAMETERS", "parameters", about.parameters.len()),
         size("STATES", "states", about.states.len()),
@@ -28,7 +27,7 @@ fn places<'a>(what: &str, vector: &str, names: impl Iterator<Item = (&'a str, &'
         format!("    /// `{name}`, {unit}.\n    pub const {constant}: usize = {place};\n")
     };
     let constants: String = names.enumerate().map(constant).collect();
-    format!("\n/// Places in `{vector}`.\npub mod {what} {{\n{constants}}}\n")
+    format!("\n/// Positions in `{vector}`.\npub mod {what} {{\n{constants}}}\n")
 }
 
 /// The functions over nalgebra's types.
@@ -38,12 +37,12 @@ pub fn functions(compiled: &Compiled) -> String {
 
 /// The functions of a prepared parameter set, which are the same for every model.
 const MOTION: &str = "\
-/// A parameter set made ready: what depends on the parameters alone is computed once.
+/// The constants of a parameter set: values that depend on the parameters alone, computed once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prepared(pub [f64; CONSTANTS]);
 
 impl Prepared {
-    /// Makes a parameter set ready.
+    /// Computes the constants of a parameter set.
     pub fn new(p: &Parameters) -> Prepared {
         let mut constants = [0.0; CONSTANTS];
         straight::prepare(&p.to_array(), &mut constants);

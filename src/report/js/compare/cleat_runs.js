@@ -1,10 +1,10 @@
 // Both sides over the same cleats: peaks, after-shakes and traces.
 
-function passages({ cleat, traces }) {
+function cleatRuns({ cleat, traces }) {
   if (!traces.length) return null;
   const places = [...new Set(cleat.runs.map((own) => `${own.mass}_${own.axis}`))];
   const first = places.includes('body_z') ? 'body_z' : places[0];
-  const shown = picker('passages', {
+  const shown = picker('cleat runs', {
     label: 'Run',
     options: traces.map((own) => [own.run, passageName(own)]),
     first: traces[Math.floor(traces.length / 2)].run,
@@ -15,7 +15,7 @@ function passages({ cleat, traces }) {
         text,
       ),
   });
-  const tables = picker('passage tables', {
+  const tables = picker('cleat run tables', {
     control: choice,
     label: 'Mass',
     options: places.map((place) => [place, words(place)]),
@@ -64,7 +64,7 @@ function passageName({ speed, height, role }) {
 
 function passagePlots(run, place, title) {
   const traces = [...run.traces].sort((a, b) => a.mass.localeCompare(b.mass) || b.axis.localeCompare(a.axis));
-  const columns = traces.map((trace) => traceColumn(trace, 'passage', title));
+  const columns = traces.map((trace) => traceColumn(trace, 'cleat run', title));
   place.replaceChildren(h('div', { class: 'columns two' }, columns));
   return traces.map((trace, at) => {
     const roles = trace.measured.length > 1 ? ['measured-a', 'measured-b'] : ['measured'];
@@ -72,7 +72,7 @@ function passagePlots(run, place, title) {
       x: TIME,
       y: ACCELERATION,
       at: run.time,
-      sync: 'passages',
+      sync: 'cleat runs',
       curves: [
         ...trace.measured.map((values, own) => ({ role: roles[own], values })),
         { role: 'before', label: 'A', values: trace.a },
