@@ -1,4 +1,4 @@
-//! What the rules of structure and visibility accept and refuse, case by case.
+//! What the rules of structure, outputs and identifiability accept and refuse, case by case.
 
 use qcar_dsl::compile::check;
 use qcar_dsl::diagnostic::Code::{self, *};
