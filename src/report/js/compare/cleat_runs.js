@@ -64,7 +64,7 @@ function cleatRunName({ speed, height, role }) {
 
 function cleatRunPlots(run, place, title) {
   const traces = [...run.traces].sort((a, b) => a.mass.localeCompare(b.mass) || b.axis.localeCompare(a.axis));
-  const columns = traces.map((trace) => traceColumn(trace, 'cleat run', title));
+  const columns = traces.map((trace) => traceColumn(trace, 'passage', title));
   place.replaceChildren(h('div', { class: 'columns two' }, columns));
   return traces.map((trace, at) => {
     const roles = trace.measured.length > 1 ? ['measured-a', 'measured-b'] : ['measured'];
