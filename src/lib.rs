@@ -48,7 +48,7 @@ pub mod workshop;
 // The residual of each sensor, in percent.
 mod sensor_residuals;
 // Units that the samples of a channel contradict.
-mod doubt;
+mod suspect_unit;
 // Dense and named matrices.
 pub mod state_space;
 // Models for other tools.

@@ -76,7 +76,7 @@ const COMPARISON: [&str; 10] = [
     include_str!("report/js/compare/vibrations.js"),
     include_str!("report/js/compare/gradients.js"),
     include_str!("report/js/compare/ratios.js"),
-    include_str!("report/js/compare/passages.js"),
+    include_str!("report/js/compare/cleat_runs.js"),
     include_str!("report/js/compare/comparison.js"),
 ];
 

@@ -86,9 +86,9 @@ fn warnings_do_not_refuse() {
         Code::UnusedElement,
         Code::UnusedLet,
         Code::GravityPullsNothing,
-        Code::NothingMoves,
-        Code::ParameterNotSeen,
-        Code::OnlyTogether,
+        Code::NoExcitation,
+        Code::ParameterUndetermined,
+        Code::OnlyInCombination,
     ];
     for &code in Code::ALL {
         let refused = report(code).refuses();

@@ -1,4 +1,4 @@
-//! What the rules of structure and visibility accept and refuse, case by case.
+//! What the rules of structure, outputs and identifiability accept and refuse, case by case.
 
 use qcar_dsl::compile::check;
 use qcar_dsl::diagnostic::Code::{self, *};
@@ -168,8 +168,8 @@ fn parameters_are_told_apart_where_the_outputs_can() {
     let two = "param a: N/m = 1; param b: N/m = 2;";
     let law = "param a: N/m = 1; param f: N = 1;";
     sees("param k: N/m = 1; param c: N s/m = 1;", "spring k; damper c;", &[]);
-    sees(two, "spring a + b;", &[OnlyTogether]);
-    sees(two, "spring sqrt(a*b);", &[OnlyTogether]);
+    sees(two, "spring a + b;", &[OnlyInCombination]);
+    sees(two, "spring sqrt(a*b);", &[OnlyInCombination]);
     sees(two, "spring a; force = b*s*(s/1 m)^2;", &[]);
     sees("param k: N/m = 1; known param q: N/m = 1;", "spring k + q;", &[]);
     // A stop, friction and a preload: none of their parameters needs to change a slope.
@@ -191,7 +191,7 @@ fn the_size_of_an_inner_state_is_seen_by_nobody() {
     sees(
         parameters,
         "state z: m; rate z = a*v - b*z; force = e*z;",
-        &[OnlyTogether],
+        &[OnlyInCombination],
     );
 }
 
@@ -203,7 +203,7 @@ fn a_dyno_sees_its_own_law() {
         )
     };
     assert_eq!(codes(&dyno("force = c*v/(1 + abs(v)/w);")), []);
-    assert_eq!(codes(&dyno("force = c*w*(v/w);")), [ParameterNotSeen]);
+    assert_eq!(codes(&dyno("force = c*w*(v/w);")), [ParameterUndetermined]);
 }
 
 #[test]

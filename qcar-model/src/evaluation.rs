@@ -1,6 +1,6 @@
 //! Arguments and results of an evaluation.
 
-/// What a tyre that rolls over a profile gives to its model, or what several give, as a row of each.
+/// Deflection and forces of a tyre that rolls over a profile; `T` is a number, or one number for each parameter set.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Contact<T = f64> {
     /// Equivalent stretch, m: minus the deflection on a flat road that would have the same contact.
@@ -17,7 +17,7 @@ pub const LANES: usize = 8;
 /// One value for each of several parameter sets.
 pub type Lanes = [f64; LANES];
 
-/// What tyres that roll give to several parameter sets.
+/// Contacts of the tyres of several parameter sets.
 pub type Contacts = Contact<Lanes>;
 
 impl Contacts {

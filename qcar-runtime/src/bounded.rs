@@ -31,7 +31,7 @@ pub fn open(path: &Path) -> io::Result<File> {
     }
 }
 
-/// The content of a file that is no measured one, with an error of [`ErrorKind::FileTooLarge`] beyond the limit.
+/// The content of a file other than a measured file, with an error of [`ErrorKind::FileTooLarge`] beyond the limit.
 fn limited(inner: impl Read) -> impl Read {
     let left = given().unwrap_or(MOST);
     Limited { inner, left }

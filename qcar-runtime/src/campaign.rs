@@ -18,7 +18,7 @@ mod contents;
 // Keys of a TOML table, with all problems collected.
 mod fields;
 // How a sensor is taken from a channel of a measured file.
-mod tap;
+mod mapping;
 // Checks of the samples of one channel.
 mod samples;
 // Runs from files of rigs and other programs.
@@ -41,8 +41,8 @@ mod profile;
 mod truth;
 
 pub use contents::{
-    Axis, Campaign, Channel, Dynamometer, FACT_UNITS, FACTS, Parameter, Profile, Quantity, Recording, Road, Role,
-    RoleNames, Run, Side, Spacing, Sweep, Tap, Test, Trigger, Window, unit_of_fact,
+    Axis, Campaign, Channel, ChannelMapping, Dynamometer, FACT_UNITS, FACTS, Parameter, Profile, Quantity, Recording,
+    Road, Role, RoleNames, Run, Side, Spacing, Sweep, Test, Trigger, Window, unit_of_fact,
 };
 pub use curve::{Curve, DynamicCurve};
 pub use dynamometer::ForceTable;

@@ -1,6 +1,7 @@
-//! The workbench: from a measurement campaign to a finding.
+//! The workbench: reads a measurement campaign, fits and simulates models, and finds missing effects.
 //!
-//! The modules stand in the order of the data, here and in every list below; a file uses only what is declared above it.
+//! The modules stand in the order of the data, here and in every list below; a file uses only what is declared above
+//! it.
 
 pub use nalgebra;
 /// What a compiled axle model offers: one trait, and its description.

@@ -111,7 +111,7 @@ struct IndexedShape {
 }
 
 impl IndexedShape {
-    /// Of a mode; a point that is not in `points` gets the next number.
+    /// Numbers the points of a mode; a point that is not in `points` gets the next number.
     fn of<'m>(mode: &'m Mode, points: &mut BTreeMap<(&'m str, &'m str), usize>) -> Self {
         let (mut shape, mut by_point) = (Vec::new(), Vec::new());
         for part in &mode.shape {

@@ -11,6 +11,6 @@ mod interval;
 mod chance;
 
 pub use chance::Chance;
-pub use interval::{Doubt, Interval, Source};
+pub use interval::{Interval, ParameterUncertainty, Source};
 pub use local::{Elasticities, direction, elasticities, size};
 pub use sobol::{Index, Indices, Plan, indices};

@@ -21,4 +21,4 @@ pub use cut::{Cut, Dot, cut};
 pub use front::{Front, Point, Settings as FrontSettings, front};
 pub use search::{Found, search};
 pub use space::{Settings as SpaceSettings, Space, space};
-pub use task::{Coupling, Designs, Knob, Limit, Sense, Task, is_met};
+pub use task::{Coupling, DesignVariable, Designs, Limit, Sense, Task, is_met};

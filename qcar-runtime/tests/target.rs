@@ -3,7 +3,7 @@
 use qcar_runtime::progress::NO_PROGRESS;
 use qcar_runtime::random::SplitMix;
 use qcar_runtime::target::{
-    Coupling, Designs, FrontSettings, Knob, Limit, Sense, SpaceSettings, Task, cut, front, search, space,
+    Coupling, DesignVariable, Designs, FrontSettings, Limit, Sense, SpaceSettings, Task, cut, front, search, space,
 };
 
 /// Results by a formula; derivatives by differences of second order.
@@ -31,8 +31,8 @@ impl Designs for Formula {
     }
 }
 
-fn knob(name: &str, lower: f64, upper: f64, today: f64, step: Option<f64>) -> Knob {
-    Knob {
+fn variable(name: &str, lower: f64, upper: f64, today: f64, step: Option<f64>) -> DesignVariable {
+    DesignVariable {
         name: name.into(),
         lower,
         upper,
@@ -52,22 +52,23 @@ fn at_most(result: usize, value: f64) -> Limit {
     }
 }
 
-fn task<'a>(designs: &'a Formula, knobs: Vec<Knob>, limits: Vec<Limit>) -> Task<'a> {
+fn task<'a>(designs: &'a Formula, variables: Vec<DesignVariable>, limits: Vec<Limit>) -> Task<'a> {
     Task {
         designs,
-        knobs,
+        variables,
         limits,
         couplings: Vec::new(),
     }
 }
 
-/// The nearest point to (2, 2) of the disc of radius 2: on the diagonal, where the multiplier is that of the cost by the radius
-/// squared over four: cost `(2√2 - r)²/16` a range of 4, with `r² = 4 (1 + e)` for an excess `e`: `-dcost/de = (2√2 - 2)/8`.
+/// The nearest point to (2, 2) of the disc of radius 2: on the diagonal, where the multiplier is that of the cost by
+/// the radius squared over four: cost `(2√2 - r)²/16` a range of 4, with `r² = 4 (1 + e)` for an excess `e`: `-dcost/de
+/// = (2√2 - 2)/8`.
 #[test]
 fn the_cheapest_design_stands_on_the_limit_and_its_multiplier_is_the_slope_of_the_cost() {
     let disc = Formula(|x| vec![x[0] * x[0] + x[1] * x[1]]);
-    let knobs = vec![knob("x", 0.0, 4.0, 2.0, None), knob("y", 0.0, 4.0, 2.0, None)];
-    let found = search(&task(&disc, knobs, vec![at_most(0, 4.0)]), 1, NO_PROGRESS).unwrap();
+    let variables = vec![variable("x", 0.0, 4.0, 2.0, None), variable("y", 0.0, 4.0, 2.0, None)];
+    let found = search(&task(&disc, variables, vec![at_most(0, 4.0)]), 1, NO_PROGRESS).unwrap();
     assert!(found.met, "{found:?}");
     for value in &found.design {
         assert!((value - 2.0_f64.sqrt()).abs() < 1e-3, "{found:?}");
@@ -80,17 +81,17 @@ fn the_cheapest_design_stands_on_the_limit_and_its_multiplier_is_the_slope_of_th
 #[test]
 fn what_must_equal_a_value_does() {
     let curved = Formula(|x| vec![x[0] * x[0] + x[1] * x[1], x[0] * x[1].exp()]);
-    let knobs = || vec![knob("x", 0.0, 4.0, 2.0, None), knob("y", 0.0, 4.0, 2.0, None)];
+    let variables = || vec![variable("x", 0.0, 4.0, 2.0, None), variable("y", 0.0, 4.0, 2.0, None)];
     let equal = |result: usize, value: f64| {
         [Sense::AtMost, Sense::AtLeast].map(|sense| Limit {
             sense,
             ..at_most(result, value)
         })
     };
-    let found = search(&task(&curved, knobs(), equal(0, 3.0).to_vec()), 1, NO_PROGRESS).unwrap();
+    let found = search(&task(&curved, variables(), equal(0, 3.0).to_vec()), 1, NO_PROGRESS).unwrap();
     assert!(found.met && found.values[0] - 3.0 < 3.0 * 5e-5, "{found:?}");
     let both = [equal(0, 3.0), equal(1, 2.0)].concat();
-    let found = search(&task(&curved, knobs(), both), 1, NO_PROGRESS).unwrap();
+    let found = search(&task(&curved, variables(), both), 1, NO_PROGRESS).unwrap();
     assert!(found.met, "{found:?}");
     for (value, wanted) in found.values.iter().zip([3.0, 2.0]) {
         assert!((value / wanted - 1.0).abs() < 5e-5, "{found:?}");
@@ -100,13 +101,13 @@ fn what_must_equal_a_value_does() {
 #[test]
 fn couplings_and_steps_hold() {
     let plane = Formula(|x| vec![x[0] + 2.0 * x[1]]);
-    let knobs = vec![
-        knob("x", 0.0, 10.0, 0.0, Some(1.0)),
-        knob("y", 0.0, 10.0, 0.0, Some(0.5)),
+    let variables = vec![
+        variable("x", 0.0, 10.0, 0.0, Some(1.0)),
+        variable("y", 0.0, 10.0, 0.0, Some(0.5)),
     ];
     let mut task = task(
         &plane,
-        knobs,
+        variables,
         vec![Limit {
             result: 0,
             sense: Sense::AtLeast,
@@ -130,9 +131,9 @@ fn couplings_and_steps_hold() {
 #[test]
 fn what_cannot_be_met_names_what_stands_in_the_way() {
     let contradiction = Formula(|x| vec![x[0], -x[0], x[1]]);
-    let knobs = vec![knob("x", 0.0, 1.0, 0.5, None), knob("y", 0.0, 1.0, 0.5, None)];
+    let variables = vec![variable("x", 0.0, 1.0, 0.5, None), variable("y", 0.0, 1.0, 0.5, None)];
     let limits = vec![at_most(0, 0.2), at_most(1, -0.8), at_most(2, 0.9)];
-    let found = search(&task(&contradiction, knobs, limits), 1, NO_PROGRESS).unwrap();
+    let found = search(&task(&contradiction, variables, limits), 1, NO_PROGRESS).unwrap();
     assert!(!found.met);
     assert!(
         found.multipliers[2] == 0.0 && found.multipliers[0] + found.multipliers[1] > 0.99,
@@ -147,8 +148,10 @@ fn the_front_of_zdt1() {
         let g = 1.0 + 9.0 * x[1..].iter().sum::<f64>() / (x.len() - 1) as f64;
         vec![x[0], g * (1.0 - (x[0] / g).sqrt())]
     });
-    let knobs = (0..5).map(|k| knob(&format!("x{k}"), 0.0, 1.0, 0.5, None)).collect();
-    let task = task(&zdt1, knobs, Vec::new());
+    let variables = (0..5)
+        .map(|k| variable(&format!("x{k}"), 0.0, 1.0, 0.5, None))
+        .collect();
+    let task = task(&zdt1, variables, Vec::new());
     let settings = FrontSettings {
         generations: 120,
         ..FrontSettings::default()
@@ -177,8 +180,10 @@ fn the_front_of_zdt1() {
 #[test]
 fn the_largest_box_in_a_triangle_and_a_hundred_thousand_designs_in_it() {
     let triangle = Formula(|x| vec![x[0] + x[1], x[2]]);
-    let knobs = (0..3).map(|k| knob(&format!("x{k}"), 0.0, 1.0, 0.5, None)).collect();
-    let task = task(&triangle, knobs, vec![at_most(0, 1.0), at_most(1, 0.7)]);
+    let variables = (0..3)
+        .map(|k| variable(&format!("x{k}"), 0.0, 1.0, 0.5, None))
+        .collect();
+    let task = task(&triangle, variables, vec![at_most(0, 1.0), at_most(1, 0.7)]);
     let settings = SpaceSettings {
         probability: 0.99,
         ..SpaceSettings::default()
@@ -212,7 +217,7 @@ fn the_largest_box_in_a_triangle_and_a_hundred_thousand_designs_in_it() {
 #[test]
 fn nothing_good_gives_no_box() {
     let bad = Formula(|x| vec![x[0] + 2.0]);
-    let task = task(&bad, vec![knob("x", 0.0, 1.0, 0.5, None)], vec![at_most(0, 1.0)]);
+    let task = task(&bad, vec![variable("x", 0.0, 1.0, 0.5, None)], vec![at_most(0, 1.0)]);
     assert!(space(&task, &[], SpaceSettings::default(), NO_PROGRESS).is_none());
 }
 
@@ -238,15 +243,15 @@ impl Designs for Scattered {
     }
 }
 
-/// `x` is even from 0 to `b` and may turn out as much as 0.2 larger; below 1 it is good. Of all, `(b - 0.8)²/(0.8 b)` are bad, which
-/// is 5 % at `b = 1`, and 1 % at `b = 0.885`. Without what is not known 5 % are bad at `b = 1.053`.
+/// `x` is even from 0 to `b` and may turn out as much as 0.2 larger; below 1 it is good. Of all, `(b - 0.8)²/(0.8 b)`
+/// are bad, which is 5 % at `b = 1`, and 1 % at `b = 0.885`. Without what is not known 5 % are bad at `b = 1.053`.
 #[test]
 fn a_box_counts_what_its_designs_may_turn_out_as() {
     for (probability, most) in [(0.95, 1.0), (0.99, 0.8848)] {
-        let knobs = vec![knob("x", 0.0, 2.0, 0.5, None)];
+        let variables = vec![variable("x", 0.0, 2.0, 0.5, None)];
         let task = Task {
             designs: &Scattered,
-            knobs,
+            variables,
             // Within three standard deviations of an even distribution.
             limits: vec![Limit {
                 margin: 0.2 * 3.0_f64.sqrt() / 3.0,

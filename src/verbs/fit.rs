@@ -33,7 +33,7 @@ use crate::terminal::prose;
 use crate::verbs::{Format, each_once};
 
 // Parameters that only a K&C curve determines.
-mod clamped;
+mod from_kc;
 // The distinct minima as text.
 mod minima;
 // Notes and warnings about a fit.
@@ -53,13 +53,14 @@ mod records;
 ///
 /// A linear model is fitted to transmissibilities, with all levels in one cost. A nonlinear model is fitted to all runs
 /// that it predicts, including cleats, K&C curves and dynamometer tables: to the first three harmonics of sweeps by
-/// harmonic balance, and to records sample by sample, each with its own uncertainty. `--all-runs` fits a linear model in
-/// this way. Without that flag a linear model is fitted so only if the campaign has time histories but no sweeps to fit,
-/// and neither `--channels` nor `--bootstrap` asks for transmissibilities. Runs with the role `fit` are fitted; `held_out`
-/// runs are only compared. The fit estimates the parameters with `fit = true` in the campaign. It also estimates those
-/// that the campaign does not name, if the model gives a default and a range and does not call them `known`. A parameter that no fitted channel depends on takes its value from the K&C curve that
-/// determines it, if the campaign has one. The exit status is 1 if the search does not end at a minimum, or if every
-/// parameter ends at a bound of its range.
+/// harmonic balance, and to records sample by sample, each with its own uncertainty. `--all-runs` fits a linear model
+/// in this way. Without that flag a linear model is fitted so only if the campaign has time histories but no sweeps to
+/// fit, and neither `--channels` nor `--bootstrap` asks for transmissibilities. Runs with the role `fit` are fitted;
+/// `held_out` runs are only compared. The fit estimates the parameters with `fit = true` in the campaign. It also
+/// estimates those that the campaign does not name, if the model gives a default and a range and does not call them
+/// `known`. A parameter that no fitted channel depends on takes its value from the K&C curve that determines it, if the
+/// campaign has one. The exit status is 1 if the search does not end at a minimum, or if every parameter ends at a
+/// bound of its range.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar fit models/campaigns/axle_a_rig --out results\n  qcar fit models/campaigns/axle_a_rig --starts 4 --fix c_tire --channels pad_to_wheel,wheel_to_body\n  qcar fit models/campaigns/axle_a_rig --profile k_tire,c_tire\n  qcar fit models/campaigns/axle_a_rig --bootstrap 1000\n  qcar fit models/campaigns/silverbox --format json"
@@ -143,8 +144,8 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     }
 }
 
-/// True for a linear model that is fitted to its transmissibilities. Time histories alone are compared sample by sample,
-/// unless something is requested that only the cost of transmissibilities has.
+/// True for a linear model that is fitted to its transmissibilities. Time histories alone are compared sample by
+/// sample, unless something is requested that only the cost of transmissibilities has.
 pub(crate) fn is_by_transmissibilities(campaign: &Campaign, about: &About, choices: &Choices) -> bool {
     let fitted = || campaign.runs.iter().filter(|run| run.role == Role::Fit);
     let only_records = fitted().any(|run| matches!(run.test, Test::TimeHistory(_)))
@@ -291,7 +292,7 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
     };
     match of_all_runs {
         Some(found) => records::take_over(&mut fitted, found),
-        None => clamped::take_over(&mut fitted)?,
+        None => from_kc::take_over(&mut fitted)?,
     }
     fitted.campaign.notices.extend(notices::all_at_bounds(&fitted.fit));
     Ok(fitted)

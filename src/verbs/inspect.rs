@@ -14,19 +14,20 @@ use crate::units;
 use crate::verbs::Format;
 
 // Summary of a channel.
-mod course;
+mod summary;
 // A file read channel by channel.
 mod contents;
 
 pub(super) use contents::{Contents, Look};
-pub(super) use course::Course;
+pub(super) use summary::ChannelSummary;
 
 /// Significant digits in the text output.
 const DIGITS: usize = 6;
 
 /// List the channels of a measured file: units, rates, ranges
 ///
-/// The format is recognised from the content: MDF 3 and 4, RPC III, UFF 58, TDMS, MAT 5 to 7.3, .xlsx, OpenCRG, or text.
+/// The format is recognised from the content: MDF 3 and 4, RPC III, UFF 58, TDMS, MAT 5 to 7.3, .xlsx, OpenCRG, or
+/// text.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar inspect models/campaigns/axle_a_rig/rig/sweep_025.csv.gz\n  qcar inspect models/campaigns/axle_a_rig/rig/sweep_025.csv.gz --format json"
@@ -109,26 +110,26 @@ impl<'a> Inspected<'a> {
 }
 
 impl<'a> Channel<'a> {
-    fn of((signal, course): (&'a Signal, &'a Course)) -> Self {
+    fn of((signal, summary): (&'a Signal, &'a ChannelSummary)) -> Self {
         Channel {
             name: &signal.name,
             unit: &signal.unit,
             group: &signal.source.group,
             place: signal.source.place.to_string(),
-            samples: course.samples,
-            missing: course.missing,
-            rate: course.rate,
-            start: course.start,
-            min: course.min,
-            max: course.max,
-            mean: course.mean,
-            rms: course.rms,
+            samples: summary.samples,
+            missing: summary.missing,
+            rate: summary.rate,
+            start: summary.start,
+            min: summary.min,
+            max: summary.max,
+            mean: summary.mean,
+            rms: summary.rms,
             labels: signal
                 .labels
                 .iter()
                 .map(|(value, text)| (*value, text.as_str()))
                 .collect(),
-            doubt: course.doubt.as_deref(),
+            doubt: summary.doubt.as_deref(),
         }
     }
 }
@@ -159,7 +160,7 @@ pub(super) fn text<T>(contents: &Contents<T>) -> String {
     }
     let doubted = contents
         .channels()
-        .filter_map(|(signal, course)| Some((signal, course.doubt.as_ref()?)));
+        .filter_map(|(signal, summary)| Some((signal, summary.doubt.as_ref()?)));
     let doubts: String = doubted
         .map(|(signal, doubt)| format!("{}: {doubt}\n", signal.full_name()))
         .collect();
@@ -183,20 +184,20 @@ fn table<T>(contents: &Contents<T>) -> String {
         "channel", "group", "unit", "samples", "missing", "rate_Hz", "start_s", "min", "max", "rms", "",
     ];
     let mut table = Table::new(headings);
-    for (signal, course) in contents.channels() {
+    for (signal, summary) in contents.channels() {
         let shown = |value: Option<f64>| or_dash(value.map(|value| units::of_file(value, &signal.unit).0), DIGITS);
         table.row(vec![
             signal.name.clone(),
             signal.source.group.clone(),
             units::of_file(0.0, &signal.unit).1.into(),
-            course.samples.to_string(),
-            course.missing.to_string(),
-            or_dash(course.rate, DIGITS),
-            or_dash(course.start, DIGITS),
-            shown(course.min),
-            shown(course.max),
-            shown(course.rms),
-            course.sparkline.clone(),
+            summary.samples.to_string(),
+            summary.missing.to_string(),
+            or_dash(summary.rate, DIGITS),
+            or_dash(summary.start, DIGITS),
+            shown(summary.min),
+            shown(summary.max),
+            shown(summary.rms),
+            summary.sparkline.clone(),
         ]);
     }
     table.text()

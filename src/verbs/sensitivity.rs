@@ -36,14 +36,14 @@ mod figure;
 
 use gather::AnalysisSettings;
 use subject::{Subject, SubjectOptions};
-use uncertainty::{Doubts, Temperatures};
+use uncertainty::{Temperatures, UncertaintySources};
 
 /// Print how metrics of an axle depend on its parameters: elasticities, shares of variance, and uncertainty
 ///
-/// Metrics are peaks and after-shakes of each mass, weighted vibration (ISO 2631-1), dynamic tyre load and suspension travel over
-/// cleats, peaks of transmissibilities, and frequencies and damping ratios of modes; `--list` prints their names.
-/// The cleats are those of the campaign, or else twelve standard ones. A campaign is fitted first, unless values are given; its
-/// standard errors then give the uncertainty of each metric.
+/// Metrics are peaks and after-shakes of each mass, weighted vibration (ISO 2631-1), dynamic tyre load and suspension
+/// travel over cleats, peaks of transmissibilities, and frequencies and damping ratios of modes; `--list` prints their
+/// names. The cleats are those of the campaign, or else twelve standard ones. A campaign is fitted first, unless values
+/// are given; its standard errors then give the uncertainty of each metric.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar sensitivity models/campaigns/axle_a_rig --out results\n  qcar sensitivity axle_a --campaign models/campaigns/axle_a_rig --metrics body_x.peak,wheel_z.* --tolerance k_tire=5%\n  qcar sensitivity quarter_car --list"
@@ -55,13 +55,15 @@ pub struct Arguments {
     /// Take start values, vehicle data and cleat runs from this campaign
     #[arg(long, value_name = "DIR")]
     campaign: Option<PathBuf>,
-    /// Parameter values that take precedence over those of the campaign or model: a TOML file with [parameters] and perhaps [vehicle], or the fit.json of a fit
+    /// Parameter values that take precedence over those of the campaign or model: a TOML file with [parameters] and
+    /// perhaps [vehicle], or the fit.json of a fit
     #[arg(long, value_name = "FILE")]
     params: Option<PathBuf>,
     /// A single value, which takes precedence over that of the files; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<Setting>,
-    /// A road beside the cleats: a class of ISO 8608 or a measured profile, such as C@60km/h or road.crg#v=0.5@50km/h; may be repeated
+    /// A road beside the cleats: a class of ISO 8608 or a measured profile, such as C@60km/h or road.crg#v=0.5@50km/h;
+    /// may be repeated
     #[arg(long, value_name = "ROAD@SPEED")]
     road: Vec<roads::RequestedRoad>,
     /// Only these runs; a * stands for any characters
@@ -76,7 +78,8 @@ pub struct Arguments {
     /// Tolerance of a part relative to its value, such as k_tire=5%; may be repeated
     #[arg(long, value_name = "NAME=PERCENT")]
     tolerance: Vec<Tolerance>,
-    /// Lowest and highest temperature of the parts, in kelvin above the temperature for which the values hold, such as -30..50
+    /// Lowest and highest temperature of the parts, in kelvin above the temperature for which the values hold, such as
+    /// -30..50
     #[arg(long, value_name = "LOW..HIGH", requires = "per_kelvin", allow_hyphen_values = true)]
     temperature: Option<Temperatures>,
     /// Relative change of a parameter per kelvin, such as c_wheel_z=-0.3%; may be repeated
@@ -189,7 +192,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         names => selection::metrics(&ground, names)?,
     };
     let parameters = selection::parameters(subject.model.about(), &subject.values, &arguments.parameters)?;
-    let doubts = doubts(&subject, &parameters, arguments)?;
+    let sources = sources(&subject, &parameters, arguments)?;
     let plan = arguments.sobol.map(|designs| Plan {
         designs: designs as usize,
         seed: arguments.seed,
@@ -197,7 +200,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let asked = AnalysisSettings {
         metrics: &metrics,
         parameters: &parameters,
-        doubts: &doubts,
+        sources: &sources,
         global: plan.map(|plan| (plan, arguments.spread.0)),
     };
     let found = while_counting(format!("{}: design", subject.name), |on_progress| {
@@ -235,7 +238,7 @@ fn list(ground: &Ground<'_>) -> String {
 }
 
 /// The choices of the user.
-fn doubts(subject: &Subject, parameters: &[usize], arguments: &Arguments) -> Result<Doubts, InputError> {
+fn sources(subject: &Subject, parameters: &[usize], arguments: &Arguments) -> Result<UncertaintySources, InputError> {
     let mut problems = Vec::new();
     let mut place = |name: &str, option: &'static str| {
         let problem = |found: &str, expected: &str, remedy: &str| flag(option, found, expected, remedy);
@@ -249,20 +252,20 @@ fn doubts(subject: &Subject, parameters: &[usize], arguments: &Arguments) -> Res
         }
         None
     };
-    let mut doubts = Doubts {
+    let mut sources = UncertaintySources {
         fit: true,
         temperatures: arguments.temperature.map_or([0.0; 2], |own| own.0),
-        ..Doubts::default()
+        ..UncertaintySources::default()
     };
     for own in &arguments.tolerance {
         let place = place(&own.name, "--tolerance");
-        doubts.tolerances.extend(place.map(|place| (place, own.part.0)));
+        sources.tolerances.extend(place.map(|place| (place, own.part.0)));
     }
     for own in &arguments.per_kelvin {
         let place = place(&own.name, "--per-kelvin");
-        doubts.per_kelvin.extend(place.map(|place| (place, own.part)));
+        sources.per_kelvin.extend(place.map(|place| (place, own.part)));
     }
-    InputError::unless_empty(problems, Some(doubts))
+    InputError::unless_empty(problems, Some(sources))
 }
 
 /// The problem of a metric that cannot be computed.

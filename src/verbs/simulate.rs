@@ -6,9 +6,9 @@ use clap::{Args, ValueEnum};
 use clap_complete::engine::ArgValueCompleter;
 use qcar_runtime::campaign::{Campaign, Test};
 use qcar_runtime::error::{InputError, Place, Problem};
-use qcar_runtime::progress::OnProgress;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::simulate::{Car, Cleat, Drive, Ride, Settings, SimulateError, Variant, rides, tyre};
+use qcar_runtime::tyre::Tyre;
 
 use crate::catalogue::{self, Loaded};
 use crate::completion;
@@ -278,7 +278,23 @@ pub(crate) fn drive(
     variant: Variant,
 ) -> Result<CleatResults, InputError> {
     model.check_inertias(values.as_slice())?;
-    let (tyre, load) = tyre(campaign)?;
+    let drives: Vec<Drive> = cleats.iter().map(Cleat::drive).collect();
+    let what = format!("{}: ride", campaign.name);
+    let rides = simulate_rides(what, model, values, tyre(campaign)?, &drives, variant);
+    let rides = checked(cleats, rides)?;
+    let compared = comparison::compare(model.about(), &campaign.roles, cleats, &rides)?;
+    Ok(CleatResults { rides, compared })
+}
+
+/// Simulates rides of a model on a tyre that carries a load (N), with progress in a terminal.
+pub(crate) fn simulate_rides(
+    what: String,
+    model: &Loaded,
+    values: &Values,
+    (tyre, load): (Tyre, f64),
+    drives: &[Drive<'_>],
+    variant: Variant,
+) -> Vec<Result<Ride, SimulateError>> {
     let car = Car {
         model: &**model,
         parameters: values.as_slice(),
@@ -286,12 +302,9 @@ pub(crate) fn drive(
         load,
         variant,
     };
-    let drives: Vec<Drive> = cleats.iter().map(Cleat::drive).collect();
-    let simulate = |on_progress: OnProgress<'_>| rides(&car, &drives, &Settings::default(), on_progress);
-    let rides = while_counting(format!("{}: ride", campaign.name), simulate);
-    let rides = checked(cleats, rides)?;
-    let compared = comparison::compare(model.about(), &campaign.roles, cleats, &rides)?;
-    Ok(CleatResults { rides, compared })
+    while_counting(what, |on_progress| {
+        rides(&car, drives, &Settings::default(), on_progress)
+    })
 }
 
 impl From<VariantName> for Variant {

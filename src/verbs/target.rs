@@ -40,9 +40,9 @@ use plan::Plan;
 
 /// Find designs that meet targets: the cheapest one, the Pareto front, and the box of good designs
 ///
-/// The file names a model or campaign, targets for its metrics (`qcar sensitivity MODEL --list` prints their names), and the parameters
-/// that may change, with ranges, steps, costs and couplings; docs/targets.md describes it.
-/// The exit status is 1 if no design is found that meets all targets.
+/// The file names a model or campaign, targets for its metrics (`qcar sensitivity MODEL --list` prints their names),
+/// and the parameters that may change, with ranges, steps, costs and couplings; docs/targets.md describes it. The exit
+/// status is 1 if no design is found that meets all targets.
 #[derive(Args)]
 #[command(after_help = "Example:\n  qcar target models/targets/axle_a.toml --out results")]
 pub struct Arguments {
@@ -78,7 +78,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let mut ground = subject.ground();
     let plan = Plan::of(&read, &subject, &mut ground)?;
     let wanted = [read.file.front.is_some(), read.file.space.is_some()];
-    let chance = plan.doubts.chance(&subject)?;
+    let chance = plan.sources.chance(&subject)?;
     let answer = gather::gather((&subject, &ground), &plan, chance, arguments.seed, wanted).ok_or_else(|| {
         let (found, expected) = (
             "no design in range that can be simulated",

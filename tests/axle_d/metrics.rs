@@ -5,7 +5,7 @@ use qcar_runtime::campaign::RoleNames;
 use qcar_runtime::metric::{Course, Ground, What};
 use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;
-use qcar_runtime::sensitivity::{Doubt, elasticities};
+use qcar_runtime::sensitivity::{ParameterUncertainty, elasticities};
 use qcar_runtime::simulate::{Method, Settings};
 
 use super::cleat;
@@ -79,8 +79,8 @@ fn hold(ground: &Ground<'_>, parameters: &[usize], part: f64, tolerance: f64) {
     }
 }
 
-/// Eigenvalues and magnitudes have some twelve digits, of which the difference leaves eight; a frequency of a peak is known
-/// less well.
+/// Eigenvalues and magnitudes have some twelve digits, of which the difference leaves eight; a frequency of a peak is
+/// known less well.
 #[test]
 fn derivatives_of_vibrations_and_resonances_are_limits_of_differences() {
     let mut ground = ground(&cleat::parameters());
@@ -167,8 +167,8 @@ fn an_interval_is_that_of_drawn_designs() {
     let parameters = open();
     let found = elasticities(&ground, &values, &parameters).expect("they are measured");
     let tolerances: Vec<f64> = parameters.iter().map(|&k| 0.03 * values.as_slice()[k]).collect();
-    let mut doubt = Doubt::none(parameters.len());
-    doubt.add_tolerances(&tolerances);
+    let mut uncertainty = ParameterUncertainty::none(parameters.len());
+    uncertainty.add_tolerances(&tolerances);
     let points = qcar_runtime::random::SplitMix::new(5).hypercube(600, parameters.len());
     let drawn = points.iter().map(|point| {
         let mut moved = values.clone();
@@ -182,7 +182,7 @@ fn an_interval_is_that_of_drawn_designs() {
         let mean = drawn.iter().map(|own| own[at]).sum::<f64>() / drawn.len() as f64;
         let variance = drawn.iter().map(|own| (own[at] - mean).powi(2)).sum::<f64>() / drawn.len() as f64;
         // A standard deviation of 600 is known to 3 %; the rest is what is not linear.
-        let ratio = doubt.of(&found.slopes[at]).deviation / variance.sqrt();
+        let ratio = uncertainty.of(&found.slopes[at]).deviation / variance.sqrt();
         assert!((0.9..1.1).contains(&ratio), "{ratio}");
     }
 }

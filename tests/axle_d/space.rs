@@ -8,13 +8,13 @@ use qcar_runtime::progress::NO_PROGRESS;
 use qcar_runtime::random::SplitMix;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::sensitivity::Chance;
-use qcar_runtime::target::{Axle, Knob, Limit, Move, Sense, Space, SpaceSettings, Task, space};
+use qcar_runtime::target::{Axle, DesignVariable, Limit, Move, Sense, Space, SpaceSettings, Task, space};
 use rayon::prelude::*;
 
 use super::cleat;
 
 /// What may move, by a fifth.
-const KNOBS: [&str; 6] = ["k_wheel_z", "c_wheel_z", "k_tire", "m_wheel", "k_pwt_z", "c_pwt_z"];
+const VARIABLES: [&str; 6] = ["k_wheel_z", "c_wheel_z", "k_tire", "m_wheel", "k_pwt_z", "c_pwt_z"];
 
 /// Metrics that need no ride, and what they may be of today's values.
 const LIMITS: [(&str, Sense, f64); 5] = [
@@ -42,7 +42,7 @@ fn a_hundred_thousand_designs_in_the_space_of_an_axle_are_as_good_as_it_says() {
         ground: &ground,
         values: values.clone(),
         moves: moves(),
-        knobs: KNOBS.len(),
+        variables: VARIABLES.len(),
         means: Vec::new(),
         chance: Chance::default(),
     };
@@ -59,19 +59,19 @@ fn place(name: &str) -> usize {
 }
 
 fn moves() -> Vec<Move> {
-    let own = |(knob, name): (usize, &&str)| Move {
-        knob,
+    let own = |(variable, name): (usize, &&str)| Move {
+        variable,
         parameter: place(name),
         factor: 1.0,
         constant: 0.0,
     };
-    KNOBS.iter().enumerate().map(own).collect()
+    VARIABLES.iter().enumerate().map(own).collect()
 }
 
 fn task<'a>(axle: &'a Axle<'a>, values: &Values, today: &[f64]) -> Task<'a> {
-    let knob = |name: &&str| {
+    let variable = |name: &&str| {
         let own = values.as_slice()[place(name)];
-        Knob {
+        DesignVariable {
             name: name.to_string(),
             lower: 0.8 * own,
             upper: 1.2 * own,
@@ -89,7 +89,7 @@ fn task<'a>(axle: &'a Axle<'a>, values: &Values, today: &[f64]) -> Task<'a> {
     };
     Task {
         designs: axle,
-        knobs: KNOBS.iter().map(knob).collect(),
+        variables: VARIABLES.iter().map(variable).collect(),
         limits: LIMITS.iter().enumerate().map(limit).collect(),
         couplings: Vec::new(),
     }

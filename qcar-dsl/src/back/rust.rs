@@ -19,7 +19,7 @@ mod vectors;
 // Sizes and functions over typed vectors.
 mod typed;
 // The implementation of the trait.
-mod seam;
+mod trait_impl;
 
 use function::Form;
 
@@ -47,7 +47,7 @@ pub fn module(compiled: &Compiled) -> String {
         typed::sizes(&compiled.about),
         parameters::parameters(compiled),
         typed::functions(compiled),
-        seam::implementation(compiled) + &vectors.types,
+        trait_impl::implementation(compiled) + &vectors.types,
         about::about(&compiled.about),
         within(STRAIGHT, numbers, "}"),
         within(WIDE, vectors.wide.iter().map(|own| indent(own)), "    }\n}"),
@@ -75,7 +75,7 @@ const ALLOW: &str = "#[allow(clippy::all, unused, non_snake_case, reason = \"nam
 const USES: &str =
     "use ::qcar_runtime::generated::{Eight, Four, Jacobians, LinesMut, OverLines, Responds, Sets, StateSpace};
 use ::qcar_runtime::generated::{fixed, fixed_mut, no_response, one, respond, respond_sets, together};
-use ::qcar_runtime::model as seam;
+use ::qcar_runtime::model as interface;
 use ::qcar_runtime::model::{Entry, Matrix};
 use ::qcar_runtime::nalgebra::SVector;
 use ::std::borrow::Cow::Borrowed;
@@ -83,19 +83,19 @@ use ::std::borrow::Cow::Borrowed;
 
 const STRAIGHT: &str = "/// The straight-line functions, over arrays: no branch, no bounds check, no allocation.
 pub mod straight {
-    use super::{CONSTANTS, INPUTS, PARAMETERS, STATES, seam};
+    use super::{CONSTANTS, INPUTS, PARAMETERS, STATES, interface};
     use ::qcar_runtime::generated::{sign, table};
 ";
 
 const WIDE: &str =
-    "/// Those of several parameter sets, or lines of a response, over vectors of four and of eight numbers.
+    "/// The same functions over vectors of four and of eight numbers: several parameter sets, or several lines of a response.
 mod wide {
     use super::*;
 
     ::qcar_runtime::in_vectors! {
 ";
 
-const FOURS: &str = "/// Those of lines of other responses, over vectors of four numbers.
+const FOURS: &str = "/// Further responses over vectors of four numbers.
 mod fours {
     use super::*;
 

@@ -104,7 +104,7 @@ const CONTACT: &[&str] = &["constants", "x", "s", "v"];
 const ROLLS: &[&str] = &["constants", "x", "u", "contact"];
 const RESPONDS: &[&str] = &["constants", FREQUENCIES];
 
-const PREPARE: &str = "What depends on the parameters alone, once for a parameter set.";
+const PREPARE: &str = "The constants of a parameter set: values that depend on the parameters alone.";
 const OUTPUTS: &str = "The outputs `y = h(x, u)`, see [`derivative`].";
 const MATRICES: &str = "The nonzeros of A = ∂f/∂x, B = ∂f/∂u, C = ∂h/∂x and D = ∂h/∂u, see [`derivative`].";
 const SENSITIVITIES: &str = "The nonzeros of the parameter Jacobians of A, B, C and D.";
@@ -286,7 +286,7 @@ Real parts of all rows, then imaginary parts{}.",
         for equation in motion.chain(&sheet.inner).chain(&sheet.names) {
             text += &format!("{} = {}\n", equation.left, equation.right.join(" "));
         }
-        text += "```\n\nAs the model says it:\n\n```text\n";
+        text += "```\n\nIn the model file:\n\n```text\n";
         let coordinates = self
             .compiled
             .model

@@ -3,7 +3,7 @@
 use std::ops::Deref;
 use std::sync::{Arc, OnceLock};
 
-use crate::diagnostic::{Diagnostic, Report, Severity, structure, visibility};
+use crate::diagnostic::{Diagnostic, Report, Severity, outputs, structure};
 use crate::expr::Graph;
 use crate::front::parse::parse_text;
 use crate::front::syntax::File;
@@ -167,9 +167,9 @@ fn refuses(found: &[Diagnostic]) -> bool {
 fn something_is_seen(model: &Model) -> Vec<Diagnostic> {
     let prescribed = |kind: &CoordinateKind| matches!(kind, CoordinateKind::Road | CoordinateKind::Motion);
     if model.outputs.is_empty() && model.channels.is_empty() {
-        vec![visibility::nothing_to_see(Span::default())]
+        vec![outputs::no_outputs(Span::default())]
     } else if model.forces.is_empty() && !model.coordinates.iter().any(|c| prescribed(&c.kind)) {
-        vec![visibility::nothing_moves(Span::default())]
+        vec![outputs::no_excitation(Span::default())]
     } else {
         vec![]
     }

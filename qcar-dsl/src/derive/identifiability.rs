@@ -17,7 +17,7 @@ use crate::check::sample::{Kind, Point};
 use crate::check::{Checked, Unseen};
 use crate::derive::linear::{Linear, linearise};
 use crate::derive::motion::{self, Motion};
-use crate::diagnostic::{Diagnostic, visibility};
+use crate::diagnostic::{Diagnostic, outputs};
 use crate::expr::{Expr, Graph, Symbol};
 use crate::model::{Model, Quantity, Signal, Term};
 
@@ -207,8 +207,8 @@ fn describe(model: &Model, estimated: &[u16], group: &[usize], sets: &[Parameter
         seen: group.len() - hidden.unwrap_or_default(),
     };
     let warning = match named.as_slice() {
-        [(span, name)] => visibility::parameter_not_seen(*span, name),
-        _ => visibility::only_together(&named, unseen.seen, combination(group, sets, &named).as_deref()),
+        [(span, name)] => outputs::parameter_undetermined(*span, name),
+        _ => outputs::only_in_combination(&named, unseen.seen, combination(group, sets, &named).as_deref()),
     };
     (unseen, warning)
 }

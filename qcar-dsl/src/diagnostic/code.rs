@@ -215,13 +215,13 @@ codes! {
     /// A gravity in a direction without masses.
     GravityPullsNothing = "gravity_pulls_nothing",
     /// A model without outputs.
-    NothingToSee = "nothing_to_see",
+    NoOutputs = "no_outputs",
     /// A model that no input moves.
-    NothingMoves = "nothing_moves",
+    NoExcitation = "no_excitation",
     /// A parameter that no response depends on.
-    ParameterNotSeen = "parameter_not_seen",
+    ParameterUndetermined = "parameter_undetermined",
     /// Parameters that affect the outputs only in combination.
-    OnlyTogether = "only_together",
+    OnlyInCombination = "only_in_combination",
     /// No effect in a file, or several.
     NotOneEffect = "not_one_effect",
     /// An effect that does not say what it is, where it comes from or how it shows.

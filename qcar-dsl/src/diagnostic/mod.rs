@@ -19,7 +19,7 @@ pub mod tables;
 // Support, solvability and passivity.
 pub mod structure;
 // Outputs and identifiability.
-pub mod visibility;
+pub mod outputs;
 // Effects and their places.
 pub mod effects;
 // The form of a report.

@@ -1,6 +1,6 @@
 //! Values and derivatives of every operation.
 
-use super::{Expr, Function, Graph, Leaves, Node, Symbol};
+use super::{CurveId, Expr, Function, Graph, Leaves, Node, Symbol};
 use crate::hash::HashMap;
 
 /// The derivative of `y = f(x)` by `x`, as an expression in both.
@@ -137,17 +137,20 @@ impl Differential {
                 let (da, db) = (self.of(g, a), self.of(g, b));
                 g.select(test, da, db)
             }
-            Node::Table(order, x, curve) => {
-                let curve = g.curve(curve).clone();
-                let dx = self.of(g, x);
-                let slope = g.table(order + 1, x, curve.clone());
-                let moved = g.mul(slope, dx);
-                let mut change = curve.map(|&entry| self.of(g, entry));
-                change.monotone = false;
-                let bent = g.table(order, x, change);
-                g.add(moved, bent)
-            }
+            Node::Table(order, x, curve) => self.table(g, order, x, curve),
         }
+    }
+
+    /// The change along the curve, and that of the curve itself.
+    fn table(&mut self, g: &mut Graph, order: u8, x: Expr, curve: CurveId) -> Expr {
+        let curve = g.curve(curve).clone();
+        let dx = self.of(g, x);
+        let slope = g.table(order + 1, x, curve.clone());
+        let along = g.mul(slope, dx);
+        let mut change = curve.map(|&entry| self.of(g, entry));
+        change.monotone = false;
+        let of_curve = g.table(order, x, change);
+        g.add(along, of_curve)
     }
 
     /// `(da - (a/b) db) / b`, which shares the quotient and its divisor.

@@ -44,7 +44,7 @@ pub struct Campaign {
     /// The sensors, in the order of the file.
     pub channels: Vec<Channel>,
     /// Source of each channel in files that are no plain tables; one for each channel.
-    pub taps: Vec<Tap>,
+    pub mappings: Vec<ChannelMapping>,
     /// The tests, in the order of the file.
     pub runs: Vec<Run>,
     /// The road profiles.
@@ -98,7 +98,7 @@ pub struct Channel {
 
 /// The channel of a measured file that is a sensor or a column of a curve, and its conversion to SI.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Tap {
+pub struct ChannelMapping {
     /// Name of the sensor or column.
     pub name: String,
     /// The channel in the file: its name, `group/name`, or a pattern with `*` and `?`.
@@ -133,7 +133,7 @@ pub struct Window {
 /// The first time that a channel rises above a value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trigger {
-    /// The channel in the file, as [`Tap::source`].
+    /// The channel in the file, as [`ChannelMapping::source`].
     pub channel: String,
     /// Threshold, in the unit of the file.
     pub above: f64,
@@ -187,7 +187,7 @@ pub struct Run {
     /// Sensors that are not read from it.
     pub without: Vec<String>,
     /// The columns of a curve.
-    pub columns: Vec<Tap>,
+    pub columns: Vec<ChannelMapping>,
     /// Role.
     pub role: Role,
     /// The test.

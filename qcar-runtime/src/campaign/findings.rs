@@ -60,10 +60,10 @@ impl Campaign {
     /// Problems of all recorded runs together: channels that no file has, and dead channels that a fit needs.
     pub(super) fn problems_of_recorded(&self) -> Vec<Problem> {
         let unheard = self
-            .taps
+            .mappings
             .iter()
-            .filter(|tap| !tap.shared && self.is_in_no_run(&tap.name));
-        let unheard = unheard.filter_map(|tap| Some(self.missing(&tap.name).next()?.1.problem.clone()));
+            .filter(|mapping| !mapping.shared && self.is_in_no_run(&mapping.name));
+        let unheard = unheard.filter_map(|mapping| Some(self.missing(&mapping.name).next()?.1.problem.clone()));
         let findings = self.recorded.iter().flat_map(|recorded| &recorded.findings);
         let dead = findings
             .filter(|finding| finding.fatal)
@@ -96,14 +96,14 @@ impl Campaign {
     /// Sentences on channels that a run lacks although another of its kind has them, or that no run has.
     pub(super) fn gaps_of_recorded(&self) -> Vec<String> {
         let mut sentences = Vec::new();
-        for tap in &self.taps {
-            let mut missing = self.missing(&tap.name);
+        for mapping in &self.mappings {
+            let mut missing = self.missing(&mapping.name);
             match missing.next() {
-                Some((_, first)) if self.is_in_no_run(&tap.name) => sentences.push(first.problem.to_string()),
+                Some((_, first)) if self.is_in_no_run(&mapping.name) => sentences.push(first.problem.to_string()),
                 Some(first) => {
                     let lacking = std::iter::once(first)
                         .chain(missing)
-                        .filter(|(run, _)| self.has_relative(run, &tap.name));
+                        .filter(|(run, _)| self.has_relative(run, &mapping.name));
                     sentences.extend(
                         lacking.map(|(_, missing)| format!("{}; other runs of the kind have it", missing.problem)),
                     );

@@ -95,7 +95,10 @@ fn campaign(folder: &Path, top: Section<'_>, files: &Files) -> Option<Campaign> 
     }
     top.finish();
     let (name, model, parameters, sensors, runs, roads) = (name?, model?, parameters?, sensors?, runs?, roads?);
-    let (channels, taps) = sensors.into_iter().map(|sensor| (sensor.channel, sensor.tap)).unzip();
+    let (channels, mappings) = sensors
+        .into_iter()
+        .map(|sensor| (sensor.channel, sensor.mapping))
+        .unzip();
     Some(Campaign {
         folder: folder.to_path_buf(),
         name,
@@ -105,7 +108,7 @@ fn campaign(folder: &Path, top: Section<'_>, files: &Files) -> Option<Campaign> 
         vehicle: workbook.with_facts(vehicle),
         roles,
         channels,
-        taps,
+        mappings,
         runs,
         roads,
         notices: Vec::new(),

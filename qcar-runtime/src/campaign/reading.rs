@@ -14,7 +14,7 @@ pub(super) struct RunData {
     pub rate: f64,
     /// Name and samples (SI) of each sensor or column, all of one length.
     pub columns: Vec<(String, Vec<f64>)>,
-    /// Taps without a channel in the file.
+    /// Mappings without a channel in the file.
     pub missing: Vec<MissingChannel>,
     /// Flaws of the samples before resampling.
     pub findings: Vec<Finding>,
@@ -39,7 +39,7 @@ impl RunData {
     }
 }
 
-/// A tap without a channel in a file.
+/// A mapping without a channel in a file.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct MissingChannel {
     pub name: String,

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use super::contents::{Campaign, Run, Tap};
+use super::contents::{Campaign, ChannelMapping, Run};
 use super::reading::{MissingChannel, RunData};
 use crate::error::{InputError, Place, Problem};
 use channel::Channel;
@@ -20,7 +20,7 @@ mod even;
 mod window;
 // Conversion to SI.
 mod values;
-// A sensor's samples from the channel of its tap.
+// A sensor's samples from the channel of its mapping.
 mod channel;
 // All channels of a run at one rate.
 mod together;
@@ -33,30 +33,33 @@ impl Campaign {
         self.recorded.iter().find(|recorded| recorded.run == run.name)
     }
 
-    /// The taps of a run: the sensors, or the columns of a curve.
-    fn taps_of<'a>(&'a self, run: &'a Run) -> Vec<&'a Tap> {
-        let taps = match run.test.sample_rate() {
-            Some(_) => &self.taps,
+    /// The mappings of a run: the sensors, or the columns of a curve.
+    fn mappings_of<'a>(&'a self, run: &'a Run) -> Vec<&'a ChannelMapping> {
+        let mappings = match run.test.sample_rate() {
+            Some(_) => &self.mappings,
             None => &run.columns,
         };
-        taps.iter().filter(|tap| !run.without.contains(&tap.name)).collect()
+        mappings
+            .iter()
+            .filter(|mapping| !run.without.contains(&mapping.name))
+            .collect()
     }
 
     /// The channels of its file that a run needs.
     fn sources(&self, run: &Run) -> Vec<String> {
-        let taps = self.taps_of(run).into_iter().map(|tap| tap.source.clone());
+        let mappings = self.mappings_of(run).into_iter().map(|mapping| mapping.source.clone());
         let trigger = run.window.trigger.iter().map(|trigger| trigger.channel.clone());
-        taps.chain(trigger).collect()
+        mappings.chain(trigger).collect()
     }
 }
 
-/// Highest sample rate of the channels that `taps` select in a file, Hz.
-pub(super) fn highest_rate(files: &Files, file: &Path, taps: &[&Tap]) -> Result<f64, InputError> {
-    let sources: Vec<String> = taps.iter().map(|tap| tap.source.clone()).collect();
+/// Highest sample rate of the channels that `mappings` select in a file, Hz.
+pub(super) fn highest_rate(files: &Files, file: &Path, mappings: &[&ChannelMapping]) -> Result<f64, InputError> {
+    let sources: Vec<String> = mappings.iter().map(|mapping| mapping.source.clone()).collect();
     let recording = files.with(file, &sources)?;
     let (mut highest, mut is_any) = (0.0_f64, false);
-    for tap in taps.iter().filter(|tap| recording.has(&tap.source)) {
-        let signal = recording.find(&tap.source);
+    for mapping in mappings.iter().filter(|mapping| recording.has(&mapping.source)) {
+        let signal = recording.find(&mapping.source);
         let signal = signal.map_err(|fault| InputError::from(problem(file, &fault)))?;
         highest = highest.max(even::rate(&signal.time, signal.samples.len(), None).unwrap_or(0.0));
         is_any = true;
@@ -80,13 +83,13 @@ pub(super) fn record(campaign: &Campaign, files: &Files, run: &Run) -> Result<Ru
     let declared = run.test.sample_rate().or(run.test.is_curve().then_some(1.0));
     let span = Span::of(&file, &recording, &run.window, declared)?;
     let (mut channels, mut missing, mut problems) = (Vec::new(), Vec::new(), Vec::new());
-    for tap in campaign.taps_of(run) {
-        match Channel::tapped(&file, &recording, tap, declared) {
+    for mapping in campaign.mappings_of(run) {
+        match Channel::mapped(&file, &recording, mapping, declared) {
             Ok(channel) if run.test.is_curve() => channels.push(channel.up_to_its_last_value()),
             Ok(channel) => channels.push(channel),
-            Err(error) if recording.has(&tap.source) => problems.extend(error.problems),
+            Err(error) if recording.has(&mapping.source) => problems.extend(error.problems),
             Err(error) => missing.extend(error.problems.into_iter().map(|problem| MissingChannel {
-                name: tap.name.clone(),
+                name: mapping.name.clone(),
                 problem,
             })),
         }

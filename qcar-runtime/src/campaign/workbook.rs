@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use qcar_signals::signal::{Recording, Signal};
 
-use super::contents::{Profile, Road, Role, Run, Tap, Test, Window};
+use super::contents::{ChannelMapping, Profile, Road, Role, Run, Test, Window};
 use super::recorded::Files;
 use super::unit::Declared;
 use crate::error::{InputError, Place};
@@ -143,11 +143,11 @@ fn curves(cells: &mut Cells<'_>, recording: &Recording, file: &str, axle: &str) 
             );
             return None;
         }
-        let taps = columns.iter().zip(COLUMNS);
-        let taps = taps.map(|(source, (column, si))| Tap {
+        let mappings = columns.iter().zip(COLUMNS);
+        let mappings = mappings.map(|(source, (column, si))| ChannelMapping {
             source: format!("{CURVES}/{source}"),
             unit: None,
-            ..Tap::plain(column, si)
+            ..ChannelMapping::plain(column, si)
         });
         Some(Run {
             name: format!("{file} {axle} {kind}"),
@@ -155,7 +155,7 @@ fn curves(cells: &mut Cells<'_>, recording: &Recording, file: &str, axle: &str) 
             plain: false,
             window: Window::default(),
             without: Vec::new(),
-            columns: taps.collect(),
+            columns: mappings.collect(),
             role: Role::Fit,
             test,
         })

@@ -29,7 +29,7 @@ pub struct Profile {
 
 /// Most steps to either side, and most evaluations for an end.
 const STEPS: usize = 40;
-const LOOKS: usize = 20;
+const EVALUATIONS: usize = 20;
 /// Relative tolerance of the distance of an end from the minimum.
 const CLOSE: f64 = 1e-3;
 /// A step is doubled if it raises the cost by less than the first share of the threshold, and halved if by more than
@@ -112,12 +112,12 @@ impl<P: Problem + ?Sized> Walk<'_, P> {
     /// bisection if that stagnates.
     fn between(&mut self, mut below: Place, mut above: Place) -> f64 {
         let start = self.minimum.x[self.of.variable];
-        for look in 0..LOOKS {
+        for evaluation in 0..EVALUATIONS {
             if (above.value - below.value).abs() <= CLOSE * (above.value - start).abs() {
                 break;
             }
             let [low, wanted, high] = [below.rise, self.of.rise, above.rise].map(|rise| rise.max(0.0).sqrt());
-            let part = if high.is_finite() && look % 3 < 2 {
+            let part = if high.is_finite() && evaluation % 3 < 2 {
                 (wanted - low) / (high - low)
             } else {
                 0.5

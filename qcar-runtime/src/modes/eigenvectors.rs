@@ -1,24 +1,25 @@
 //! Eigenvectors of a matrix whose eigenvalues are known, by inverse iteration.
 //!
-//! States of a model act on few others. Ordered such that these are near (E. Cuthill, J. McKee, "Reducing the bandwidth of sparse
-//! symmetric matrices", ACM 1969), the matrix is a narrow band, whose elimination takes work with the number of states.
+//! A state of a model acts on few others. If the states are ordered so that those which act on each other are close (E.
+//! Cuthill, J. McKee, "Reducing the bandwidth of sparse symmetric matrices", ACM 1969), the matrix is a narrow band,
+//! and the work of an elimination grows linearly with the number of states.
 
 use std::collections::VecDeque;
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-/// A matrix, with which its eigenvectors are found.
+/// A matrix in band form, for its eigenvectors.
 pub(crate) struct Eigenvectors {
-    /// The state at each place.
+    /// The state at each position of the ordering.
     order: Vec<usize>,
-    /// Largest distance of two places whose states act on each other.
+    /// Bandwidth: the largest distance between positions whose states act on each other.
     band: usize,
-    /// Place of the row, place of the column, and value of each nonzero.
+    /// Row, column (both as positions) and value of each nonzero.
     entries: Vec<(usize, usize, f64)>,
 }
 
 impl Eigenvectors {
-    /// Of a square matrix.
+    /// Orders the states of a square matrix.
     pub fn of(a: &DMatrix<f64>) -> Self {
         let order = order(a);
         let mut places = vec![0; order.len()];
@@ -75,7 +76,7 @@ impl Eigenvectors {
     }
 }
 
-/// The states, those that act on each other near each other.
+/// The states in the order of Cuthill and McKee.
 fn order(a: &DMatrix<f64>) -> Vec<usize> {
     let count = a.nrows();
     let acts = |one: usize, other: usize| one != other && (a[(one, other)] != 0.0 || a[(other, one)] != 0.0);
@@ -99,7 +100,7 @@ fn order(a: &DMatrix<f64>) -> Vec<usize> {
     order
 }
 
-/// Rows of a band matrix, with room for what exchanges of rows bring to the right of the band.
+/// A band matrix, row by row. To the right of the band there is space for entries that row exchanges create.
 struct Banded {
     band: usize,
     entries: Vec<Complex<f64>>,
@@ -128,12 +129,12 @@ impl Banded {
     }
 }
 
-/// The factors of a band matrix, by elimination with exchanges of rows.
+/// The LU factors of a band matrix, with partial pivoting.
 struct Factors {
     count: usize,
-    /// On the diagonal and to its right the upper factor, below it how often each row was subtracted.
+    /// The upper factor on and above the diagonal, the multipliers of the rows below it.
     rows: Banded,
-    /// The row that each row was exchanged with.
+    /// For each row, the row with which it was exchanged.
     exchanged: Vec<usize>,
 }
 
@@ -192,7 +193,7 @@ mod tests {
 
     use super::Eigenvectors;
 
-    /// Of a matrix without structure, and of one of two parts that do not act on each other.
+    /// A matrix without structure, and one with two parts that do not act on each other.
     #[test]
     fn a_matrix_scales_its_eigenvectors() {
         let entry = |row: usize, column: usize| ((7 * row + 3 * column * column + 1) as f64).sin();

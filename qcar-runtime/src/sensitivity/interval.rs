@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 
 /// Uncertainty of parameters, relative to their values.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Doubt {
+pub struct ParameterUncertainty {
     /// Covariance of each source, in the order of [`Source::ALL`].
     covariances: [DMatrix<f64>; 3],
     /// Difference of the mean of each parameter from its value.
@@ -52,7 +52,7 @@ impl Source {
     }
 }
 
-impl Doubt {
+impl ParameterUncertainty {
     /// No uncertainty of `count` parameters.
     pub fn none(count: usize) -> Self {
         Self {
@@ -106,16 +106,16 @@ impl Doubt {
 
 #[cfg(test)]
 mod tests {
-    use super::Doubt;
+    use super::ParameterUncertainty;
 
     #[test]
     fn errors_that_go_together_cancel_in_what_depends_on_their_difference() {
-        let mut doubt = Doubt::none(2);
-        doubt.add_errors(&[2.0, 2.0], |_, _| 1.0);
-        assert!(doubt.of(&[1.0, -1.0]).deviation < 1e-12);
-        assert!((doubt.of(&[1.0, 1.0]).deviation - 4.0).abs() < 1e-12);
-        doubt.add_tolerances(&[3.0, 0.0]);
-        let sum = doubt.of(&[1.0, 1.0]);
+        let mut uncertainty = ParameterUncertainty::none(2);
+        uncertainty.add_errors(&[2.0, 2.0], |_, _| 1.0);
+        assert!(uncertainty.of(&[1.0, -1.0]).deviation < 1e-12);
+        assert!((uncertainty.of(&[1.0, 1.0]).deviation - 4.0).abs() < 1e-12);
+        uncertainty.add_tolerances(&[3.0, 0.0]);
+        let sum = uncertainty.of(&[1.0, 1.0]);
         assert!((sum.deviation - 19.0_f64.sqrt()).abs() < 1e-12);
         assert!((sum.shares[0] - 11.0 / 19.0).abs() < 1e-12);
         assert!((sum.sources[0] - 16.0 / 19.0).abs() < 1e-12);
@@ -124,10 +124,10 @@ mod tests {
     /// One temperature for all parameters: its effects on two parameters with opposite drift cancel.
     #[test]
     fn a_temperature_moves_all_parts_together() {
-        let mut doubt = Doubt::none(2);
-        doubt.add_temperature(&[0.01, -0.02], [-30.0, 50.0]);
-        assert!(doubt.of(&[2.0, 1.0]).deviation < 1e-12);
-        let own = doubt.of(&[1.0, 0.0]);
+        let mut uncertainty = ParameterUncertainty::none(2);
+        uncertainty.add_temperature(&[0.01, -0.02], [-30.0, 50.0]);
+        assert!(uncertainty.of(&[2.0, 1.0]).deviation < 1e-12);
+        let own = uncertainty.of(&[1.0, 0.0]);
         // Uniform over 80 K about a mean of 10 K.
         assert!((own.deviation - 0.01 * 80.0 / 12.0_f64.sqrt()).abs() < 1e-12);
         assert!((own.shift - 0.1).abs() < 1e-12);

@@ -37,8 +37,8 @@ pub struct ExponentialAdams<const F: usize> {
     parts: Vec<Part>,
     /// Corrections for the shortest step, for twice that, and so on.
     corrections: Vec<Corrections<F>>,
-    /// Index of the step length in use.
-    rung: usize,
+    /// Number of times that the shortest step is doubled now.
+    doubling: usize,
     /// The state.
     state: Vec<f64>,
     /// The predicted next state.
@@ -81,17 +81,17 @@ impl<const F: usize> ExponentialAdams<F> {
         let mut corrections: Vec<Corrections<F>> = (0..=doublings).map(|_| Corrections::none(states)).collect();
         for part in &mut parts {
             let mut flow = linear.matrix(part).exponential()?;
-            for (rung, corrections) in corrections.iter_mut().enumerate() {
-                if rung > 0 {
+            for (doubling, corrections) in corrections.iter_mut().enumerate() {
+                if doubling > 0 {
                     flow = flow.times(&flow);
                 }
-                part.add_rung(&flow, 0.5_f64.powi(rung as i32), corrections);
+                part.add_step_length(&flow, 0.5_f64.powi(doubling as i32), corrections);
             }
         }
         Some(Self {
             parts,
             corrections,
-            rung: 0,
+            doubling: 0,
             state: vec![0.0; states],
             ahead: vec![0.0; states],
             excess: vec![0.0; states],
@@ -109,7 +109,7 @@ impl<const F: usize> ExponentialAdams<F> {
     /// Begins at state `x` with the shortest step. `past` are forces at points with the distance of this step, the
     /// present ones last.
     pub fn begin(&mut self, x: &[f64], past: &[[f64; F]; PAST]) {
-        (self.rung, self.known) = (0, PAST);
+        (self.doubling, self.known) = (0, PAST);
         self.state.copy_from_slice(x);
         for (point, forces) in past.iter().rev().enumerate() {
             for (known, force) in self.past.iter_mut().zip(forces) {
@@ -121,14 +121,14 @@ impl<const F: usize> ExponentialAdams<F> {
 
     /// True if the step may be doubled.
     pub fn may_double(&self) -> bool {
-        self.rung + 1 < self.corrections.len()
+        self.doubling + 1 < self.corrections.len()
     }
 
     /// Doubles the step if that is allowed and enough past forces are known. Returns true if it did.
     pub fn lengthen(&mut self) -> bool {
         let longer = self.may_double() && self.known == KEPT;
         if longer {
-            (self.rung, self.known) = (self.rung + 1, PAST);
+            (self.doubling, self.known) = (self.doubling + 1, PAST);
             for known in &mut self.past {
                 *known = array::from_fn(|point| known[(2 * point).min(KEPT - 1)]);
             }
@@ -152,7 +152,7 @@ impl<const F: usize> ExponentialAdams<F> {
     #[inline(always)]
     pub fn advance(&mut self, system: &mut impl Driven<F>, t: f64, relative: f64, absolute: &[f64]) -> bool {
         for part in &mut self.parts {
-            part.predict(self.rung, &mut self.ahead);
+            part.predict(self.doubling, &mut self.ahead);
         }
         let Some(force) = system.force(t, &self.ahead) else {
             return false;
@@ -173,7 +173,7 @@ impl<const F: usize> ExponentialAdams<F> {
     fn is_within(&mut self, off: [f64; F], relative: f64, absolute: &[f64]) -> bool {
         let n = self.state.len();
         let (ahead, excess, absolute) = (&self.ahead[..n], &mut self.excess[..n], &absolute[..n]);
-        let errors = self.corrections[self.rung]
+        let errors = self.corrections[self.doubling]
             .last_order
             .each_ref()
             .map(|error| &error[..n]);
@@ -189,7 +189,7 @@ impl<const F: usize> ExponentialAdams<F> {
     fn go_on(&mut self, force: [f64; F], off: [f64; F]) {
         let n = self.state.len();
         let (ahead, state) = (&self.ahead[..n], &mut self.state[..n]);
-        let corrections = self.corrections[self.rung]
+        let corrections = self.corrections[self.doubling]
             .whole
             .each_ref()
             .map(|correction| &correction[..n]);
@@ -244,7 +244,7 @@ impl Part {
 
     /// Adds a step length, from the flow of states and derivatives of forces over it. `unit` is the unit of their time,
     /// as a fraction of the step.
-    fn add_rung<const F: usize>(&mut self, flow: &Matrix, unit: f64, corrections: &mut Corrections<F>) {
+    fn add_step_length<const F: usize>(&mut self, flow: &Matrix, unit: f64, corrections: &mut Corrections<F>) {
         let n = self.states.len();
         let mut made_of = Matrix::zero(flow.size());
         for state in 0..n {
@@ -274,8 +274,8 @@ impl Part {
 
     /// Predicts the next state.
     #[inline(always)]
-    fn predict(&mut self, rung: usize, ahead: &mut [f64]) {
-        self.propagators[rung].apply(&self.from, &mut self.ahead);
+    fn predict(&mut self, doubling: usize, ahead: &mut [f64]) {
+        self.propagators[doubling].apply(&self.from, &mut self.ahead);
         for (&place, value) in self.states.iter().zip(&self.ahead) {
             ahead[place] = *value;
         }

@@ -1,17 +1,18 @@
-//! An axle as a family of designs: knobs change its parameters, readings are its results.
+//! An axle as a family of designs: its parameters depend on design variables, and readings are its results.
 
 use rayon::prelude::*;
 
 use super::task::Designs;
+use crate::mean::mean;
 use crate::metric::{Ground, MetricError};
 use crate::response::parameters::Values;
 use crate::sensitivity::Chance;
 
-/// Effect of a knob on a parameter: the parameter is the knob times a factor, plus a constant.
+/// Effect of a design variable on a parameter: the parameter is the design variable times a factor, plus a constant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Move {
-    /// Position of the knob.
-    pub knob: usize,
+    /// Position of the design variable.
+    pub variable: usize,
     /// Index of the parameter; parameters tied to it follow.
     pub parameter: usize,
     /// The factor.
@@ -20,16 +21,16 @@ pub struct Move {
     pub constant: f64,
 }
 
-/// An axle whose parameters follow knobs.
+/// An axle whose parameters follow design variables.
 pub struct Axle<'a> {
     /// The metrics.
     pub ground: &'a Ground<'a>,
-    /// Values of the parameters that no knob changes.
+    /// Values of the parameters that no design variable changes.
     pub values: Values,
-    /// The knobs.
+    /// Effects of the design variables on the parameters.
     pub moves: Vec<Move>,
-    /// Number of knobs.
-    pub knobs: usize,
+    /// Number of design variables.
+    pub variables: usize,
     /// Means of readings, given by the positions of these: further results after the readings.
     pub means: Vec<Vec<usize>>,
     /// Uncertainty of the parameters, the same for every design.
@@ -41,15 +42,15 @@ impl Axle<'_> {
     pub fn values_of(&self, design: &[f64]) -> Values {
         let mut values = self.values.clone();
         for own in &self.moves {
-            values.set(own.parameter, own.factor * design[own.knob] + own.constant);
+            values.set(own.parameter, own.factor * design[own.variable] + own.constant);
         }
         values
     }
 
-    /// The direction of the parameters along which a knob moves by `size`.
-    fn direction(&self, knob: usize, size: f64) -> Vec<f64> {
+    /// The direction of the parameters along which a design variable moves by `size`.
+    fn direction(&self, variable: usize, size: f64) -> Vec<f64> {
         let mut direction = vec![0.0; self.values.as_slice().len()];
-        for own in self.moves.iter().filter(|own| own.knob == knob) {
+        for own in self.moves.iter().filter(|own| own.variable == variable) {
             for (at, moved) in direction.iter_mut().enumerate() {
                 if self.values.leader(at) == own.parameter {
                     *moved = own.factor * size;
@@ -66,7 +67,11 @@ const ABREAST: usize = 12;
 impl Axle<'_> {
     fn results(&self, measured: Result<Vec<f64>, MetricError>) -> Option<Vec<f64>> {
         let mut values = measured.ok()?;
-        let means: Vec<f64> = self.means.iter().map(|of| mean(of, |at| values[at])).collect();
+        let means: Vec<f64> = self
+            .means
+            .iter()
+            .map(|of| mean(of.iter().map(|&at| values[at])))
+            .collect();
         values.extend(means);
         values.iter().all(|value| value.is_finite()).then_some(values)
     }
@@ -108,17 +113,19 @@ impl Designs for Axle<'_> {
             .iter()
             .map(|value| if *value == 0.0 { 1.0 } else { *value })
             .collect();
-        let directions: Vec<Vec<f64>> = (0..self.knobs).map(|knob| self.direction(knob, sizes[knob])).collect();
+        let directions: Vec<Vec<f64>> = (0..self.variables)
+            .map(|variable| self.direction(variable, sizes[variable]))
+            .collect();
         let found = self.ground.measure_with(&self.values_of(design), &directions).ok()?;
-        let by_knob = |slopes: &Vec<f64>| slopes.iter().zip(&sizes).map(|(slope, size)| slope / size).collect();
-        let mut slopes: Vec<Vec<f64>> = found.slopes.iter().map(by_knob).collect();
-        let of_mean = |of: &Vec<usize>| (0..self.knobs).map(|knob| mean(of, |at| slopes[at][knob])).collect();
+        let by_variable = |slopes: &Vec<f64>| slopes.iter().zip(&sizes).map(|(slope, size)| slope / size).collect();
+        let mut slopes: Vec<Vec<f64>> = found.slopes.iter().map(by_variable).collect();
+        let of_mean = |of: &Vec<usize>| {
+            (0..self.variables)
+                .map(|variable| mean(of.iter().map(|&at| slopes[at][variable])))
+                .collect()
+        };
         let means: Vec<Vec<f64>> = self.means.iter().map(of_mean).collect();
         slopes.extend(means);
         Some(slopes)
     }
-}
-
-fn mean(of: &[usize], value: impl Fn(usize) -> f64) -> f64 {
-    of.iter().map(|&at| value(at)).sum::<f64>() / of.len() as f64
 }

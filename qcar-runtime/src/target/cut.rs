@@ -1,34 +1,34 @@
-//! Slices around a box: good and bad designs in the plane of two knobs.
+//! Slices around a box: good and bad designs in the plane of two design variables.
 
 use super::space::Space;
 use super::task::{Task, is_met};
 use crate::random::SplitMix;
 
-/// Designs over the whole ranges of two knobs, with all others anywhere in the box.
+/// Designs over the whole ranges of two design variables, with all others anywhere in the box.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cut {
-    /// Positions of the knobs.
-    pub knobs: [usize; 2],
+    /// Positions of the design variables.
+    pub variables: [usize; 2],
     /// The designs.
     pub dots: Vec<Dot>,
 }
 
-/// A design in the plane of two knobs.
+/// A design in the plane of two design variables.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dot {
-    /// Values of both knobs.
+    /// Values of both design variables.
     pub at: [f64; 2],
     /// Position of the limit or coupling that is exceeded most; `None` if all are met.
     pub broken: Option<usize>,
 }
 
 /// Draws `count` designs with random results.
-pub fn cut(task: &Task<'_>, space: &Space, knobs: [usize; 2], count: usize, seed: u64) -> Cut {
-    let points = SplitMix::new(seed).hypercube(count, task.knobs.len());
+pub fn cut(task: &Task<'_>, space: &Space, variables: [usize; 2], count: usize, seed: u64) -> Cut {
+    let points = SplitMix::new(seed).hypercube(count, task.variables.len());
     let task = task.without_margins();
     let design = |(number, point): (usize, Vec<f64>)| {
-        let value = |k: usize| match knobs.contains(&k) {
-            true => task.knobs[k].at(point[k]),
+        let value = |k: usize| match variables.contains(&k) {
+            true => task.variables[k].at(point[k]),
             false => space.intervals[k][0] + point[k] * (space.intervals[k][1] - space.intervals[k][0]),
         };
         ((0..point.len()).map(value).collect(), number as u64)
@@ -44,12 +44,12 @@ pub fn cut(task: &Task<'_>, space: &Space, knobs: [usize; 2], count: usize, seed
             .max_by(|a, b| a.1.total_cmp(b.1));
         let broken = most.filter(|(_, excess)| !is_met(**excess)).map(|(at, _)| at);
         Some(Dot {
-            at: knobs.map(|k| design[k]),
+            at: variables.map(|k| design[k]),
             broken,
         })
     };
     Cut {
-        knobs,
+        variables,
         dots: designs.into_iter().zip(results).filter_map(dot).collect(),
     }
 }

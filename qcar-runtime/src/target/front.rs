@@ -1,4 +1,5 @@
-//! The Pareto front of some results: designs that meet all limits, of which none is better in every one of these results.
+//! The Pareto front of some results: designs that meet all limits, of which none is better in every one of these
+//! results.
 //!
 //! NSGA-II (Deb, Pratap, Agarwal and Meyarivan, IEEE Trans. Evol. Comp. 6, 2002) with its constrained domination.
 
@@ -30,7 +31,7 @@ impl Default for Settings {
 /// A design on the front.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
-    /// A value for each knob.
+    /// A value for each design variable.
     pub design: Vec<f64>,
     /// All results.
     pub values: Vec<f64>,
@@ -74,7 +75,7 @@ pub fn front(
 ) -> Front {
     let mut random = SplitMix::new(settings.seed);
     let mut points: Vec<Vec<f64>> = known.iter().map(|design| task.places(design)).collect();
-    points.extend(random.hypercube(settings.population, task.knobs.len()));
+    points.extend(random.hypercube(settings.population, task.variables.len()));
     let mut members = evaluated(task, aims, &points);
     let mut count = settings.population + known.len();
     sort(&mut members);
@@ -101,7 +102,10 @@ pub fn front(
 }
 
 fn evaluated(task: &Task<'_>, aims: &[(usize, Sense)], points: &[Vec<f64>]) -> Vec<Member> {
-    let designs: Vec<Vec<f64>> = points.iter().map(|places| task.had(&task.design(places))).collect();
+    let designs: Vec<Vec<f64>> = points
+        .iter()
+        .map(|places| task.available(&task.design(places)))
+        .collect();
     let results = task.designs.values_of_all(&designs);
     let member = |(design, values): (Vec<f64>, Option<Vec<f64>>)| {
         let values = values?;
@@ -140,7 +144,8 @@ fn points_of(task: &Task<'_>, members: Vec<Member>) -> Vec<Point> {
     first.into_iter().map(point).collect()
 }
 
-/// True if a member dominates another: a smaller violation of limits, or else better in one objective and worse in none.
+/// True if a member dominates another: a smaller violation of limits, or else better in one objective and worse in
+/// none.
 fn dominates(a: &Member, b: &Member) -> bool {
     if a.broken != b.broken {
         return a.broken < b.broken;
@@ -156,7 +161,7 @@ fn sort(members: &mut [Member]) {
     while !left.is_empty() {
         let is_first = |at: &usize| !left.iter().any(|other| dominates(&members[*other], &members[*at]));
         let (first, others): (Vec<usize>, Vec<usize>) = left.iter().partition(|at| is_first(at));
-        give_room(members, &first);
+        set_crowding_distances(members, &first);
         first.iter().for_each(|&at| members[at].rank = rank);
         (left, rank) = (others, rank + 1);
     }
@@ -164,7 +169,7 @@ fn sort(members: &mut [Member]) {
 }
 
 /// The crowding distance: the distance between the neighbours on a front, over all objectives.
-fn give_room(members: &mut [Member], front: &[usize]) {
+fn set_crowding_distances(members: &mut [Member], front: &[usize]) {
     front.iter().for_each(|&at| members[at].room = 0.0);
     for aim in 0..front.first().map_or(0, |&at| members[at].aims.len()) {
         let mut order = front.to_vec();

@@ -1,20 +1,20 @@
 //! Least squares in a box with linear inequalities, whose violation has a price.
 //!
 //! `min Σ w (d - e)² + Σ price max(0, g + A d)` over `low ≤ d ≤ high`. For given multipliers, the best `d` follows for
-//! each knob separately; the multipliers maximise the dual, one after another (Hildreth, Naval Res. Logist. Quart. 4,
-//! 1957).
+//! each design variable separately; the multipliers maximise the dual, one after another (Hildreth, Naval Res. Logist.
+//! Quart. 4, 1957).
 
 /// The programme.
 pub(super) struct Quadratic<'a> {
     /// Weights, above zero.
     pub weights: &'a [f64],
-    /// Unconstrained optimum of each knob.
+    /// Unconstrained optimum of each design variable.
     pub wanted: &'a [f64],
     pub low: &'a [f64],
     pub high: &'a [f64],
     /// Violation of each inequality at zero.
     pub excess: &'a [f64],
-    /// For each inequality, its derivative by each knob.
+    /// For each inequality, its derivative by each design variable.
     pub slopes: &'a [Vec<f64>],
     /// Upper bound of the multiplier of each inequality.
     pub prices: &'a [f64],
@@ -51,20 +51,22 @@ impl Quadratic<'_> {
 
     /// The best step under the pull of the inequalities.
     fn step(&self, pull: &[f64]) -> Vec<f64> {
-        (0..pull.len()).map(|knob| self.knob(knob, pull[knob])).collect()
+        (0..pull.len())
+            .map(|variable| self.variable(variable, pull[variable]))
+            .collect()
     }
 
-    fn knob(&self, knob: usize, pull: f64) -> f64 {
-        let free = self.wanted[knob] - pull / (2.0 * self.weights[knob]);
-        free.clamp(self.low[knob], self.high[knob])
+    fn variable(&self, variable: usize, pull: f64) -> f64 {
+        let free = self.wanted[variable] - pull / (2.0 * self.weights[variable]);
+        free.clamp(self.low[variable], self.high[variable])
     }
 
     /// The best multiplier of a row with all others fixed; the remaining excess decreases as it grows.
     fn best(&self, row: usize, now: f64, pull: &[f64]) -> f64 {
         let slopes = &self.slopes[row];
         let left = |multiplier: f64| {
-            let knobs = slopes.iter().enumerate().filter(|(_, slope)| **slope != 0.0);
-            let moved = knobs.map(|(k, slope)| slope * self.knob(k, pull[k] + (multiplier - now) * slope));
+            let variables = slopes.iter().enumerate().filter(|(_, slope)| **slope != 0.0);
+            let moved = variables.map(|(k, slope)| slope * self.variable(k, pull[k] + (multiplier - now) * slope));
             self.excess[row] + moved.sum::<f64>()
         };
         if left(0.0) <= 0.0 {

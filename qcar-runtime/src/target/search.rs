@@ -1,7 +1,7 @@
 //! The design of least cost that meets all limits, or the one with the smallest violation.
 //!
-//! Sequential quadratic programming under an exact penalty in a trust region (Fletcher, "Practical Methods of Optimization",
-//! 2nd ed., section 14.4), from today's design and from the most promising of a Latin hypercube.
+//! Sequential quadratic programming under an exact penalty in a trust region (Fletcher, "Practical Methods of
+//! Optimization", 2nd ed., section 14.4), from today's design and from the most promising of a Latin hypercube.
 
 use rayon::prelude::*;
 
@@ -13,7 +13,7 @@ use crate::random::SplitMix;
 /// Result of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
-    /// A value for each knob.
+    /// A value for each design variable.
     pub design: Vec<f64>,
     /// Its results.
     pub values: Vec<f64>,
@@ -31,7 +31,7 @@ pub struct Found {
 }
 
 /// Designs that are evaluated before the searches begin, and the number of searches.
-const LOOKS: usize = 120;
+const SURVEYED: usize = 120;
 const STARTS: usize = 3;
 const ITERATIONS: usize = 25;
 /// First and smallest size of a step relative to the ranges, and smallest size as long as a limit is violated.
@@ -43,7 +43,7 @@ const GAIN: f64 = 0.05;
 /// Relative distance inside a limit at which the search aims: a search that aims at the limit itself would often end
 /// beyond it.
 const MARGIN: f64 = 1e-4;
-/// Least cost of a knob, which makes every step unique.
+/// Least cost of a design variable, which makes every step unique.
 const LEAST_COST: f64 = 1e-4;
 
 /// Searches, and reports its rounds to `on_progress`. `None` if neither an evaluated design nor today's has results.
@@ -52,13 +52,13 @@ pub fn search(task: &Task<'_>, seed: u64, on_progress: OnProgress<'_>) -> Option
     on_progress(0, 2);
     let ends: Vec<State> = starts.into_par_iter().map(|start| settle(task, start)).collect();
     on_progress(1, 2);
-    let effort = ends
-        .iter()
-        .fold([LOOKS, 0], |sum, end| [sum[0] + end.effort[0], sum[1] + end.effort[1]]);
+    let effort = ends.iter().fold([SURVEYED, 0], |sum, end| {
+        [sum[0] + end.effort[0], sum[1] + end.effort[1]]
+    });
     let mut best = ends.into_iter().min_by(|a, b| a.rank().total_cmp(&b.rank()))?;
     best.effort = effort;
-    if task.knobs.iter().any(|knob| knob.step.is_some()) {
-        best = had(task, best);
+    if task.variables.iter().any(|variable| variable.step.is_some()) {
+        best = to_available(task, best);
     }
     on_progress(2, 2);
     Some(found(task, best))
@@ -118,13 +118,13 @@ impl State {
 
 /// The price of violating a limit by its own size: more than any move could cost.
 fn price(task: &Task<'_>) -> f64 {
-    10.0 * (1.0 + task.knobs.iter().map(|knob| knob.cost).sum::<f64>())
+    10.0 * (1.0 + task.variables.iter().map(|variable| variable.cost).sum::<f64>())
 }
 
 fn starts(task: &Task<'_>, seed: u64) -> Vec<State> {
     let price = price(task);
     let today = task.places(&task.today());
-    let points = SplitMix::new(seed).hypercube(LOOKS, task.knobs.len());
+    let points = SplitMix::new(seed).hypercube(SURVEYED, task.variables.len());
     let designs: Vec<Vec<f64>> = points.iter().map(|places| task.design(places)).collect();
     let looked = points.into_iter().zip(task.designs.values_of_all(&designs));
     let mut looked: Vec<State> = looked
@@ -138,7 +138,7 @@ fn starts(task: &Task<'_>, seed: u64) -> Vec<State> {
 /// Minimises the merit function, and raises the penalties as long as limits are violated.
 fn settle(task: &Task<'_>, mut state: State) -> State {
     for _ in 0..3 {
-        state = descend(task, state, &vec![true; task.knobs.len()]);
+        state = descend(task, state, &vec![true; task.variables.len()]);
         if state.met {
             break;
         }
@@ -193,28 +193,34 @@ fn descend(task: &Task<'_>, mut state: State, free: &[bool]) -> State {
     state
 }
 
-/// For each limit and coupling, its derivative by the position of each knob.
+/// For each limit and coupling, its derivative by the position of each design variable.
 fn slopes_at(task: &Task<'_>, places: &[f64]) -> Option<Vec<Vec<f64>>> {
-    let by_knob = task.designs.slopes(&task.design(places))?;
+    let by_variable = task.designs.slopes(&task.design(places))?;
     let limits = task.limits.iter().map(|limit| {
-        let slopes = by_knob[limit.result].iter().zip(&task.knobs);
-        slopes.map(|(slope, knob)| limit.slope(*slope) * knob.span()).collect()
+        let slopes = by_variable[limit.result].iter().zip(&task.variables);
+        slopes
+            .map(|(slope, variable)| limit.slope(*slope) * variable.span())
+            .collect()
     });
     let couplings = task.couplings.iter().map(|coupling| {
-        let knobs = task.knobs.iter().enumerate();
-        knobs
-            .map(|(k, knob)| coupling.slope(k, &task.knobs) * knob.span())
+        let variables = task.variables.iter().enumerate();
+        variables
+            .map(|(k, variable)| coupling.slope(k, &task.variables) * variable.span())
             .collect()
     });
     Some(limits.chain(couplings).collect())
 }
 
 fn solve(task: &Task<'_>, state: &State, slopes: &[Vec<f64>], radius: f64, free: &[bool]) -> (Vec<f64>, Vec<f64>) {
-    let knobs = || task.knobs.iter().zip(&state.places).zip(free);
-    let weights: Vec<f64> = task.knobs.iter().map(|knob| knob.cost.max(LEAST_COST)).collect();
-    let wanted = knobs().map(|((knob, place), _)| match knob.cost {
+    let variables = || task.variables.iter().zip(&state.places).zip(free);
+    let weights: Vec<f64> = task
+        .variables
+        .iter()
+        .map(|variable| variable.cost.max(LEAST_COST))
+        .collect();
+    let wanted = variables().map(|((variable, place), _)| match variable.cost {
         0.0 => 0.0,
-        _ => (knob.today - knob.lower) / knob.span() - place,
+        _ => (variable.today - variable.lower) / variable.span() - place,
     });
     let radius = |free: bool| if free { radius } else { 0.0 };
     let margins = task.margins(MARGIN);
@@ -230,10 +236,10 @@ fn solve(task: &Task<'_>, state: &State, slopes: &[Vec<f64>], radius: f64, free:
     let quadratic = Quadratic {
         weights: &weights,
         wanted: &wanted.collect::<Vec<_>>(),
-        low: &knobs()
+        low: &variables()
             .map(|((_, place), free)| (-place).max(-radius(*free)))
             .collect::<Vec<_>>(),
-        high: &knobs()
+        high: &variables()
             .map(|((_, place), free)| (1.0 - place).min(radius(*free)))
             .collect::<Vec<_>>(),
         excess: &excess,
@@ -254,11 +260,12 @@ fn expected(task: &Task<'_>, state: &State, slopes: &[Vec<f64>], step: &[f64]) -
     task.cost(&task.design(&places)) + task.missed(&after) + state.price * task.broken(&after, &task.margins(MARGIN))
 }
 
-/// Moves to available values: rounds each knob, tries its neighbours, and optimises the other knobs again.
-fn had(task: &Task<'_>, from: State) -> State {
-    let rounded = |places: &[f64]| task.places(&task.had(&task.design(places)));
+/// Moves to available values: rounds each design variable, tries its neighbours, and optimises the
+/// others again.
+fn to_available(task: &Task<'_>, from: State) -> State {
+    let rounded = |places: &[f64]| task.places(&task.available(&task.design(places)));
     let follow = |state: State| {
-        let free: Vec<bool> = task.knobs.iter().map(|knob| knob.step.is_none()).collect();
+        let free: Vec<bool> = task.variables.iter().map(|variable| variable.step.is_none()).collect();
         if free.contains(&true) {
             descend(task, state, &free)
         } else {
@@ -274,10 +281,10 @@ fn had(task: &Task<'_>, from: State) -> State {
     while better {
         better = false;
         for (k, step) in task
-            .knobs
+            .variables
             .iter()
             .enumerate()
-            .filter_map(|(k, knob)| Some((k, knob.step? / knob.span())))
+            .filter_map(|(k, variable)| Some((k, variable.step? / variable.span())))
         {
             for moved in [-step, step] {
                 let mut places = best.places.clone();

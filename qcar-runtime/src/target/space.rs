@@ -1,4 +1,5 @@
-//! The solution space: the largest box of knobs' intervals in which all limits hold with a stated probability.
+//! The solution space: the largest box of design variables' intervals in which all limits hold with a stated
+//! probability.
 //!
 //! Zimmermann and von Hoessle, "Computing solution spaces for robust design", Int. J. Numer. Meth. Engng 94 (2013)
 //! 290–307. A box grows to all sides, designs are drawn in it, and parts with bad designs are cut off so that as few
@@ -39,7 +40,7 @@ impl Default for Settings {
 /// A box of intervals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Space {
-    /// The interval of each knob.
+    /// The interval of each design variable.
     pub intervals: Vec<[f64; 2]>,
     /// Share of good designs among those that judge it.
     pub probability: f64,
@@ -57,15 +58,15 @@ pub struct Space {
 const GROWTH: f64 = 0.08;
 /// Good designs from which cuts are tried.
 const ANCHORS: usize = 16;
-/// Largest number of final rounds of growth. This and the other sizes of steps and rounds below are choices: they affect
-/// the time of the search and the size of the box, not whether it is confirmed.
+/// Largest number of final rounds of growth. This and the other sizes of steps and rounds below are choices: they
+/// affect the time of the search and the size of the box, not whether it is confirmed.
 const FINAL_ROUNDS: usize = 8;
 /// Growth of a final round at each end of each interval, relative to its length.
 const SURROUNDINGS: f64 = 0.05;
 /// Number of steps in which that growth is examined.
 const STEPS: usize = 20;
-/// Number of designs that confirm a box, relative to the smallest number that could. With fewer designs a larger share of
-/// them must be good, so the box becomes smaller.
+/// Number of designs that confirm a box, relative to the smallest number that could. With fewer designs a larger share
+/// of them must be good, so the box becomes smaller.
 const CONFIRMING: usize = 8;
 /// Level of significance: a worse box would give as many good designs by chance once in twenty times.
 const BY_CHANCE: f64 = 0.05;
@@ -78,7 +79,7 @@ const CONFIRMATIONS: usize = 16;
 /// Largest number of larger boxes that are judged after that.
 const FURTHER_ONES: usize = 4;
 
-/// A box in positions of the knobs, 0 to 1.
+/// A box in positions of the design variables, 0 to 1.
 type Sides = Vec<[f64; 2]>;
 
 /// A drawn design.
@@ -96,18 +97,9 @@ pub fn space(task: &Task<'_>, known: &[Vec<f64>], settings: Settings, on_progres
     let real = task.without_margins();
     let start = start(task, known, &mut random, settings.samples);
     let start = start.or_else(|| self::start(&real, known, &mut random, settings.samples))?;
-    let mut sides: Sides = start.iter().map(|place| [*place; 2]).collect();
-    let mut evaluated = 2 * settings.samples;
+    let sides = start.iter().map(|place| [*place; 2]).collect();
     let rounds = settings.rounds + FINAL_ROUNDS;
-    for round in 0..settings.rounds {
-        on_progress(round, rounds);
-        let growth = GROWTH * (1.0 - 0.9 * round as f64 / settings.rounds as f64);
-        let before = sides.clone();
-        grow(&mut sides, growth);
-        let drawn = draw(task, &sides, settings.samples, &mut random);
-        evaluated += drawn.len();
-        sides = trimmed(&sides, &drawn).unwrap_or(before);
-    }
+    let sides = widened(task, sides, settings, &mut random, &|round| on_progress(round, rounds));
     // The smallest number of good designs without a bad one that shows the probability at 95 % confidence; a multiple
     // of it allows for bad ones.
     let judges = settings
@@ -115,20 +107,57 @@ pub fn space(task: &Task<'_>, known: &[Vec<f64>], settings: Settings, on_progres
         .max((2.0 * 3.0 / (1.0 - settings.probability).max(1e-4)).ceil() as usize);
     let confirming = CONFIRMING * judges;
     let enough = probably_enough(confirming, settings.probability);
-    for round in 0..FINAL_ROUNDS {
+    let (sides, evaluated) = adjusted(&real, sides, (confirming, enough), &mut random, &|round| {
         on_progress(settings.rounds + round, rounds);
+    });
+    on_progress(rounds, rounds);
+    Some(confirmed(
+        &real,
+        sides,
+        (settings.probability, confirming),
+        (2 + settings.rounds) * settings.samples + evaluated,
+        &mut random,
+    ))
+}
+
+/// The first rounds: the box grows on all sides, and bad designs are cut off.
+fn widened(
+    task: &Task<'_>,
+    mut sides: Sides,
+    settings: Settings,
+    random: &mut SplitMix,
+    on_round: &dyn Fn(usize),
+) -> Sides {
+    for round in 0..settings.rounds {
+        on_round(round);
+        let growth = GROWTH * (1.0 - 0.9 * round as f64 / settings.rounds as f64);
+        let before = sides.clone();
+        grow(&mut sides, growth);
+        let drawn = draw(task, &sides, settings.samples, random);
+        sides = trimmed(&sides, &drawn).unwrap_or(before);
+    }
+    sides
+}
+
+/// The final rounds: the box becomes the largest one around it in which enough designs are good. Also returns the
+/// number of evaluated designs.
+fn adjusted(
+    task: &Task<'_>,
+    mut sides: Sides,
+    (count, enough): (usize, f64),
+    random: &mut SplitMix,
+    on_round: &dyn Fn(usize),
+) -> (Sides, usize) {
+    for round in 0..FINAL_ROUNDS {
+        on_round(round);
         let around = grown(&sides, SURROUNDINGS);
         if around == sides {
-            break;
+            return (sides, round * count);
         }
-        let drawn = turned_out(&real, &around, confirming, &mut random);
-        evaluated += drawn.len();
+        let drawn = draw_uncertain(task, &around, count, random);
         match largest_within(&sides, &around, &drawn, enough) {
             Some(STEPS) => sides = around,
-            Some(step) => {
-                sides = between(&sides, &around, step);
-                break;
-            }
+            Some(step) => return (between(&sides, &around, step), (round + 1) * count),
             None if task.designs.is_certain() => {
                 let inside: Vec<RandomDesign> = drawn.into_iter().filter(|own| holds(&sides, &own.places)).collect();
                 sides = trimmed(&sides, &inside).unwrap_or_else(|| shrunk(&sides));
@@ -137,14 +166,7 @@ pub fn space(task: &Task<'_>, known: &[Vec<f64>], settings: Settings, on_progres
             None => sides = shrunk(&shrunk(&sides)),
         }
     }
-    on_progress(rounds, rounds);
-    Some(confirmed(
-        &real,
-        sides,
-        (settings.probability, confirming),
-        evaluated,
-        &mut random,
-    ))
+    (sides, FINAL_ROUNDS * count)
 }
 
 /// Judges a box by new designs. If too many are bad, the box shrinks until enough are good; then it grows step by step
@@ -159,7 +181,7 @@ fn confirmed(
     random: &mut SplitMix,
 ) -> Space {
     let mut judge = |sides: &Sides| {
-        let drawn = turned_out(task, sides, confirming, random);
+        let drawn = draw_uncertain(task, sides, confirming, random);
         evaluated += drawn.len();
         judged(task, sides, &drawn, evaluated)
     };
@@ -214,7 +236,7 @@ fn between(sides: &Sides, around: &Sides, step: usize) -> Sides {
 
 /// The good design that is furthest inside all limits.
 fn start(task: &Task<'_>, known: &[Vec<f64>], random: &mut SplitMix, samples: usize) -> Option<Vec<f64>> {
-    let all = vec![[0.0, 1.0]; task.knobs.len()];
+    let all = vec![[0.0, 1.0]; task.variables.len()];
     let mut drawn = draw(task, &all, 2 * samples, random);
     drawn.extend(known.iter().map(|design| drawn_at(task, task.places(design))));
     let inside = |own: &RandomDesign| {
@@ -265,7 +287,7 @@ fn draw(task: &Task<'_>, sides: &Sides, count: usize, random: &mut SplitMix) -> 
 }
 
 /// Random designs with random results.
-fn turned_out(task: &Task<'_>, sides: &Sides, count: usize, random: &mut SplitMix) -> Vec<RandomDesign> {
+fn draw_uncertain(task: &Task<'_>, sides: &Sides, count: usize, random: &mut SplitMix) -> Vec<RandomDesign> {
     if task.designs.is_certain() {
         return draw(task, sides, count, random);
     }
@@ -307,8 +329,8 @@ fn trimmed(sides: &Sides, drawn: &[RandomDesign]) -> Option<Sides> {
     boxes.max_by(|a, b| log_volume(a).total_cmp(&log_volume(b)))
 }
 
-/// The box around an anchor with each bad design cut off, along the knob that loses the fewest good designs, then the
-/// least volume.
+/// The box around an anchor with each bad design cut off, along the design variable that loses the fewest good designs,
+/// then the least volume.
 fn without(sides: &Sides, anchor: &[f64], good: &[&RandomDesign], bad: &[&RandomDesign]) -> Sides {
     let mut sides = sides.clone();
     let mut order: Vec<&&RandomDesign> = bad.iter().collect();
@@ -336,10 +358,10 @@ fn without(sides: &Sides, anchor: &[f64], good: &[&RandomDesign], bad: &[&Random
 }
 
 /// Position of a cut between a bad design and the good ones on the anchor's side: halfway to the nearest.
-fn cut_at(good: &[&&RandomDesign], bad: f64, anchor: f64, knob: usize) -> f64 {
+fn cut_at(good: &[&&RandomDesign], bad: f64, anchor: f64, variable: usize) -> f64 {
     let inside = good
         .iter()
-        .map(|own| own.places[knob])
+        .map(|own| own.places[variable])
         .filter(|place| (place - bad) * (anchor - bad) > 0.0);
     let nearest = inside
         .chain([anchor])
@@ -370,10 +392,10 @@ fn judged(task: &Task<'_>, sides: &Sides, drawn: &[RandomDesign], evaluated: usi
     let each = 0..task.limits.len() + task.couplings.len();
     Space {
         intervals: task
-            .knobs
+            .variables
             .iter()
             .zip(sides)
-            .map(|(knob, side)| side.map(|place| knob.at(place)))
+            .map(|(variable, side)| side.map(|place| variable.at(place)))
             .collect(),
         probability: good as f64 / count as f64,
         at_least: lower_bound(good, count),

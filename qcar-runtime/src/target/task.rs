@@ -1,13 +1,13 @@
-//! Limits of results, and the knobs that may change to meet them.
+//! Limits of results, and the design variables that may change to meet them.
 
 use rayon::prelude::*;
 
-/// Results of designs; a design has a value for each knob.
+/// Results of designs, which have a value for each design variable.
 pub trait Designs: Sync {
     /// The results of a design; `None` if it has none.
     fn values(&self, design: &[f64]) -> Option<Vec<f64>>;
 
-    /// The derivatives of each result by each knob.
+    /// The derivatives of each result by each design variable.
     fn slopes(&self, design: &[f64]) -> Option<Vec<Vec<f64>>>;
 
     /// True if a design's results are certain; otherwise [`Designs::drawn`] gives random draws of them.
@@ -34,9 +34,9 @@ pub trait Designs: Sync {
     }
 }
 
-/// The knobs.
+/// A parameter that may change, or several that change with it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Knob {
+pub struct DesignVariable {
     /// Name for messages.
     pub name: String,
     /// Lower end of its range.
@@ -75,10 +75,10 @@ pub enum Sense {
     AtLeast,
 }
 
-/// A sum of knobs that must not exceed a value.
+/// A sum of design variables that must not exceed a value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coupling {
-    /// Coefficient of each knob.
+    /// Coefficient of each design variable.
     pub factors: Vec<f64>,
     /// Largest value of the sum.
     pub most: f64,
@@ -92,16 +92,16 @@ pub fn is_met(excess: f64) -> bool {
     excess <= TOLERANCE
 }
 
-/// A task: designs with their knobs, limits and couplings.
+/// A task: designs with their variables, limits and couplings.
 #[derive(Clone)]
 pub struct Task<'a> {
     /// The designs.
     pub designs: &'a dyn Designs,
-    /// The knobs.
-    pub knobs: Vec<Knob>,
+    /// The design variables.
+    pub variables: Vec<DesignVariable>,
     /// The limits.
     pub limits: Vec<Limit>,
-    /// Couplings between knobs.
+    /// Couplings between design variables.
     pub couplings: Vec<Coupling>,
 }
 
@@ -134,7 +134,7 @@ impl Limit {
     }
 }
 
-impl Knob {
+impl DesignVariable {
     /// The value at a fraction of the range, 0 to 1.
     pub fn at(&self, place: f64) -> f64 {
         self.lower + place * self.span()
@@ -151,7 +151,7 @@ impl Knob {
     }
 
     /// The nearest available value.
-    pub fn had(&self, value: f64) -> f64 {
+    pub fn available(&self, value: f64) -> f64 {
         let last = |step: f64| (self.span() / step + 1e-9).floor();
         let nearest = |step: f64| self.lower + step * ((value - self.lower) / step).round().clamp(0.0, last(step));
         self.step.map_or(value, nearest)
@@ -160,8 +160,8 @@ impl Knob {
 
 impl Coupling {
     /// Violation by a design, relative to the size of the sum.
-    pub fn excess(&self, design: &[f64], knobs: &[Knob]) -> f64 {
-        (self.sum(design) - self.most) / self.size(knobs)
+    pub fn excess(&self, design: &[f64], variables: &[DesignVariable]) -> f64 {
+        (self.sum(design) - self.most) / self.size(variables)
     }
 
     /// The sum for a design.
@@ -170,17 +170,17 @@ impl Coupling {
         pairs.map(|(factor, value)| factor * value).sum()
     }
 
-    /// Derivative of the violation by a knob.
-    pub fn slope(&self, knob: usize, knobs: &[Knob]) -> f64 {
-        self.factors[knob] / self.size(knobs)
+    /// Derivative of the violation by a design variable.
+    pub fn slope(&self, variable: usize, variables: &[DesignVariable]) -> f64 {
+        self.factors[variable] / self.size(variables)
     }
 
-    fn size(&self, knobs: &[Knob]) -> f64 {
+    fn size(&self, variables: &[DesignVariable]) -> f64 {
         let terms = self
             .factors
             .iter()
-            .zip(knobs)
-            .map(|(factor, knob)| (factor * knob.upper).abs().max((factor * knob.lower).abs()));
+            .zip(variables)
+            .map(|(factor, variable)| (factor * variable.upper).abs().max((factor * variable.lower).abs()));
         terms.fold(f64::MIN_POSITIVE, f64::max)
     }
 }
@@ -194,46 +194,46 @@ impl Task<'_> {
         own
     }
 
-    /// The design at these positions of its knobs, 0 to 1.
+    /// The design at these positions of its variables, 0 to 1.
     pub fn design(&self, places: &[f64]) -> Vec<f64> {
-        self.knobs
+        self.variables
             .iter()
             .zip(places)
-            .map(|(knob, place)| knob.at(*place))
+            .map(|(variable, place)| variable.at(*place))
             .collect()
     }
 
-    /// Positions of a design's knobs in their ranges, 0 to 1.
+    /// Positions of a design's variables in their ranges, 0 to 1.
     pub fn places(&self, design: &[f64]) -> Vec<f64> {
-        self.knobs
+        self.variables
             .iter()
             .zip(design)
-            .map(|(knob, value)| knob.place(*value))
+            .map(|(variable, value)| variable.place(*value))
             .collect()
     }
 
     /// The nearest design of available values.
-    pub fn had(&self, design: &[f64]) -> Vec<f64> {
-        self.knobs
+    pub fn available(&self, design: &[f64]) -> Vec<f64> {
+        self.variables
             .iter()
             .zip(design)
-            .map(|(knob, value)| knob.had(*value))
+            .map(|(variable, value)| variable.available(*value))
             .collect()
     }
 
     /// The present design, moved into the ranges.
     pub fn today(&self) -> Vec<f64> {
-        self.knobs
+        self.variables
             .iter()
-            .map(|knob| knob.today.clamp(knob.lower, knob.upper))
+            .map(|variable| variable.today.clamp(variable.lower, variable.upper))
             .collect()
     }
 
     /// Cost of a design.
     pub fn cost(&self, design: &[f64]) -> f64 {
-        let moves = self.knobs.iter().zip(design);
+        let moves = self.variables.iter().zip(design);
         moves
-            .map(|(knob, value)| knob.cost * ((value - knob.today) / knob.span()).powi(2))
+            .map(|(variable, value)| variable.cost * ((value - variable.today) / variable.span()).powi(2))
             .sum()
     }
 
@@ -244,7 +244,7 @@ impl Task<'_> {
             .chain(
                 self.couplings
                     .iter()
-                    .map(|coupling| coupling.excess(design, &self.knobs)),
+                    .map(|coupling| coupling.excess(design, &self.variables)),
             )
             .collect()
     }

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use crate::bytes::{Bytes, Number, text};
-use crate::error::{Fault, Read};
+use crate::error::{Fault, Place, Read};
 
 /// An object as a segment describes it.
 pub(super) struct SegmentObject {
@@ -240,22 +240,7 @@ fn daqmx(from: &Bytes, at: &mut u64, digital: bool) -> Read<Index> {
     let start = *at;
     let count = from.u64(*at + 8, "a number of values")?;
     *at += 16;
-    let mut scalers = Vec::new();
-    let mut unread = None;
-    for _ in 0..step_u32(from, at)? {
-        let (kind, buffer, byte) = (step_u32(from, at)?, step_u32(from, at)?, step_u32(from, at)?);
-        *at += if digital { 1 } else { 4 };
-        let id = step_u32(from, at)?;
-        match daqmx_number(kind).filter(|_| !digital) {
-            Some(number) => scalers.push(Scaler {
-                id,
-                number,
-                buffer,
-                byte,
-            }),
-            None => unread = Some(kind),
-        }
-    }
+    let scalers = daqmx_scalers(from, at, digital)?;
     let mut widths = Vec::new();
     for _ in 0..step_u32(from, at)? {
         widths.push(step_u32(from, at)?);
@@ -264,31 +249,42 @@ fn daqmx(from: &Bytes, at: &mut u64, digital: bool) -> Read<Index> {
         let width = widths.get(scaler.buffer as usize).copied().unwrap_or(0);
         u64::from(scaler.byte) + scaler.number.size() as u64 <= width.into()
     };
-    match unread {
-        None if scalers.iter().all(inside) => Ok(Index {
-            count,
-            layout: Layout::Daqmx { scalers, widths },
-        }),
-        None => Err(Fault::damaged(
-            from.place(start),
-            "a value outside the rows of its buffer",
-            "a value in a row",
-        )),
-        Some(kind) => {
-            let found = if digital {
-                "digital lines of DAQmx".into()
-            } else {
-                format!("DAQmx data of type {kind}")
-            };
-            let remedy = "export the file without them";
-            Err(Fault::new(
-                from.place(start),
-                found,
-                "DAQmx data of whole or floating-point numbers",
-                remedy,
-            ))
-        }
+    if !scalers.iter().all(inside) {
+        let found = "a value outside the rows of its buffer";
+        return Err(Fault::damaged(from.place(start), found, "a value in a row"));
     }
+    Ok(Index {
+        count,
+        layout: Layout::Daqmx { scalers, widths },
+    })
+}
+
+fn daqmx_scalers(from: &Bytes, at: &mut u64, digital: bool) -> Read<Vec<Scaler>> {
+    let place = from.place(*at - 16);
+    let mut scalers = Vec::new();
+    for _ in 0..step_u32(from, at)? {
+        let (kind, buffer, byte) = (step_u32(from, at)?, step_u32(from, at)?, step_u32(from, at)?);
+        *at += if digital { 1 } else { 4 };
+        let id = step_u32(from, at)?;
+        let number = daqmx_number(kind).filter(|_| !digital);
+        scalers.push(Scaler {
+            id,
+            number: number.ok_or_else(|| unread_daqmx(place.clone(), kind, digital))?,
+            buffer,
+            byte,
+        });
+    }
+    Ok(scalers)
+}
+
+fn unread_daqmx(place: Place, kind: u32, digital: bool) -> Box<Fault> {
+    let found = if digital {
+        "digital lines of DAQmx".into()
+    } else {
+        format!("DAQmx data of type {kind}")
+    };
+    let expected = "DAQmx data of whole or floating-point numbers";
+    Fault::new(place, found, expected, "export the file without them")
 }
 
 fn daqmx_number(kind: u32) -> Option<Number> {

@@ -5,8 +5,8 @@ use std::path::Path;
 use qcar_runtime::campaign::{Campaign, Role, Run, Test};
 use qcar_runtime::error::InputError;
 
-use crate::doubt::{Statistics, doubt};
 use crate::failure::Failure;
+use crate::suspect_unit::{Statistics, suspicion};
 use crate::table::{Table, number};
 
 /// Significant digits.
@@ -24,7 +24,7 @@ pub(super) fn verdict(folder: &Path) -> Result<(bool, String), Failure> {
             sentences.push(sentence);
         }
     }
-    sentences.extend(doubts(&campaign)?);
+    sentences.extend(suspect_units(&campaign)?);
     let well = !findings.iter().any(|finding| finding.fatal);
     let verdict = match (well, sentences.is_empty()) {
         (true, true) => "ok".to_string(),
@@ -39,12 +39,12 @@ pub(super) fn verdict(folder: &Path) -> Result<(bool, String), Failure> {
 }
 
 /// Sensors whose samples contradict their unit.
-fn doubts(campaign: &Campaign) -> Result<Vec<String>, InputError> {
+fn suspect_units(campaign: &Campaign) -> Result<Vec<String>, InputError> {
     let mut sentences = Vec::new();
     for run in campaign.runs.iter().filter(|run| run.test.sample_rate().is_some()) {
         let history = campaign.history(run)?;
         sentences.extend(history.signals.iter().filter_map(|(channel, samples)| {
-            let what = doubt(channel.quantity.unit(), does(samples))?;
+            let what = suspicion(channel.quantity.unit(), does(samples))?;
             Some(format!("{}, `{}`: {what}", run.name, channel.name))
         }));
     }

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::cleat_runs::CleatRun;
 use super::gather::Comparison;
 use super::gradients::Gradient;
 use super::modes::Pair;
-use super::moved::Parameter;
-use super::passages::Passage;
+use super::parameters::Parameter;
 use super::ratios::{Ratio, Summary};
 use super::records::{Metric, Metrics, Trace};
 use super::sides::Side;
@@ -118,7 +118,7 @@ impl<'a> Contents<'a> {
             result: Result::of(comparison),
             axles: Axles { a: axle(a), b: axle(b) },
             ratios: &comparison.ratios,
-            traces: comparison.passages.iter().map(traces).collect(),
+            traces: comparison.cleat_runs.iter().map(traces).collect(),
             version: env!("CARGO_PKG_VERSION"),
         }
     }
@@ -137,9 +137,9 @@ impl<'a> Result<'a> {
             transmissibility: comparison.ratios.iter().map(Ratio::summary).collect(),
             cleat: Cleat {
                 conditions: comparison.conditions,
-                runs: comparison.passages.iter().flat_map(runs).collect(),
-                summary: summary(&comparison.passages, |metric| metric.change),
-                measured: Some(summary(&comparison.passages, Metric::measured_change)).filter(|own| !own.is_empty()),
+                runs: comparison.cleat_runs.iter().flat_map(runs).collect(),
+                summary: summary(&comparison.cleat_runs, |metric| metric.change),
+                measured: Some(summary(&comparison.cleat_runs, Metric::measured_change)).filter(|own| !own.is_empty()),
             },
             kc: &comparison.gradients,
             notices: &comparison.notices,
@@ -157,7 +157,7 @@ fn named(of: &Side) -> Named<'_> {
     }
 }
 
-fn runs(of: &Passage) -> impl Iterator<Item = Run<'_>> {
+fn runs(of: &CleatRun) -> impl Iterator<Item = Run<'_>> {
     of.compared.metrics.iter().map(|metrics| Run {
         run: &of.name,
         role: of.role,
@@ -167,7 +167,7 @@ fn runs(of: &Passage) -> impl Iterator<Item = Run<'_>> {
     })
 }
 
-fn traces(of: &Passage) -> Traces<'_> {
+fn traces(of: &CleatRun) -> Traces<'_> {
     Traces {
         run: &of.name,
         role: of.role,
@@ -179,9 +179,9 @@ fn traces(of: &Passage) -> Traces<'_> {
 }
 
 /// Changes of every mass and axis that was compared.
-fn summary(of: &[Passage], change: fn(&Metric) -> Option<f64>) -> BTreeMap<String, Changes> {
+fn summary(of: &[CleatRun], change: fn(&Metric) -> Option<f64>) -> BTreeMap<String, Changes> {
     let mut groups: BTreeMap<String, Vec<&Metrics>> = BTreeMap::new();
-    for metrics in of.iter().flat_map(|passage| &passage.compared.metrics) {
+    for metrics in of.iter().flat_map(|cleat_run| &cleat_run.compared.metrics) {
         let name = format!("{}_{}", metrics.mass, metrics.axis);
         groups.entry(name).or_default().push(metrics);
     }

@@ -5,10 +5,10 @@ use qcar_runtime::campaign::{Campaign, Test};
 use qcar_runtime::roles::{RoleError, Roles};
 
 use super::Arguments;
+use super::cleat_runs::{self, CleatRun};
 use super::gradients::{Gradient, gradients};
 use super::modes::{self, Pair};
-use super::moved::{self, Parameter};
-use super::passages::{self, Passage};
+use super::parameters::{self, Parameter};
 use super::ratios::{self, Ratio};
 use super::sides::{Measured, Side, sides};
 use super::subject::Subject;
@@ -28,7 +28,7 @@ pub(super) struct Comparison {
     pub ratios: Vec<Ratio>,
     /// Kind of the cleat runs.
     pub conditions: &'static str,
-    pub passages: Vec<Passage>,
+    pub cleat_runs: Vec<CleatRun>,
     pub gradients: Vec<Gradient>,
     /// Parts that could not be compared, with reasons.
     pub notices: Vec<String>,
@@ -48,19 +48,19 @@ pub(super) fn gather(subject: &Subject, arguments: &Arguments) -> Result<Compari
     let mut notices: Vec<String> = sides.iter().flat_map(odd_values).collect();
     notices.extend(sides.iter().filter_map(start_values));
     let ratios = all_ratios(&sides, both, beside.as_ref(), arguments, &mut notices)?;
-    let (conditions, passages) = all_passages(&sides, both, beside.as_ref(), &mut notices)?;
+    let (conditions, cleat_runs) = all_cleat_runs(&sides, both, beside.as_ref(), &mut notices)?;
     Ok(Comparison {
         kind: match subject {
             Subject::Parameters(_) => "parameters",
             Subject::Models(_) => "models",
             Subject::Campaigns(_) => "campaigns",
         },
-        parameters: moved::parameters(&sides),
+        parameters: parameters::parameters(&sides),
         modes: modes::pairs(&sides),
         difference: difference(&sides[0].compiled.model, &sides[1].compiled.model),
         ratios,
         conditions,
-        passages,
+        cleat_runs,
         gradients: both.map(gradients).unwrap_or_default(),
         notices,
         sides,
@@ -135,12 +135,12 @@ fn roles(side: &Side, beside: Option<&Campaign>) -> Result<Roles, RoleError> {
     Roles::of(side.model.about(), &named.unwrap_or_default())
 }
 
-fn all_passages(
+fn all_cleat_runs(
     sides: &[Side; 2],
     both: Option<[&Measured; 2]>,
     beside: Option<&Campaign>,
     notices: &mut Vec<String>,
-) -> Result<(&'static str, Vec<Passage>), Failure> {
+) -> Result<(&'static str, Vec<CleatRun>), Failure> {
     let roles = match sides.each_ref().map(|side| roles(side, beside)) {
         [Ok(a), Ok(b)] => [a, b],
         [Err(error), _] | [_, Err(error)] => {
@@ -159,16 +159,19 @@ fn all_passages(
     }
     let is_cleat = |campaign: &Campaign| campaign.runs.iter().any(|run| matches!(run.test, Test::Cleat { .. }));
     if let Some([a, b]) = both {
-        let passages = passages::of_campaigns(sides, &roles, [&a.campaign, &b.campaign])?;
-        if !passages.is_empty() {
-            return Ok(("runs of both campaigns", passages));
+        let cleat_runs = cleat_runs::of_campaigns(sides, &roles, [&a.campaign, &b.campaign])?;
+        if !cleat_runs.is_empty() {
+            return Ok(("runs of both campaigns", cleat_runs));
         }
         notices.push(
             "The campaigns have no cleat run with the same speed and height: the standard runs are simulated.".into(),
         );
     }
     if let Some(campaign) = beside.filter(|campaign| is_cleat(campaign)) {
-        return Ok(("runs of the campaign", passages::of_campaign(sides, &roles, campaign)?));
+        return Ok((
+            "runs of the campaign",
+            cleat_runs::of_campaign(sides, &roles, campaign)?,
+        ));
     }
-    Ok(("standard runs", passages::standard(sides, &roles)?))
+    Ok(("standard runs", cleat_runs::standard(sides, &roles)?))
 }

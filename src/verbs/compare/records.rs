@@ -1,4 +1,4 @@
-//! Records of one passage, aligned at the time at which the wheel reaches the cleat: peaks and after-shakes of thesis
+//! Records of one cleat run, aligned at the time at which the wheel reaches the cleat: peaks and after-shakes of thesis
 //! section 3.6.2, and traces.
 
 use std::collections::BTreeMap;
@@ -11,13 +11,13 @@ use crate::report::rounded::curve;
 /// A mass and an axis.
 pub(super) type Key = (String, String);
 
-/// Accelerations of a passage, m/s².
+/// Accelerations of a cleat run, m/s².
 pub(super) type Record<'a> = BTreeMap<Key, &'a [f64]>;
 
 /// Time before the impact that is shown, s.
 const RUN_IN: f64 = 0.05;
 
-/// A passage of both sides.
+/// A cleat run of both sides.
 #[derive(Serialize)]
 pub(super) struct Compared {
     /// One entry for each mass and axis of both sides.

@@ -7,7 +7,7 @@ use std::path::Path;
 use super::contents::{Changes, Result, Spread};
 use super::gather::Comparison;
 use super::modes::Pair;
-use super::moved::Parameter;
+use super::parameters::Parameter;
 use super::ratios::Largest;
 use crate::table::{Table, noted, number, or_dash};
 use crate::units;
@@ -242,7 +242,7 @@ pub(super) fn ratios_csv(of: &Comparison) -> String {
 }
 
 /// Peaks and after-shakes, speeds and heights.
-pub(super) fn passages_csv(of: &Comparison) -> String {
+pub(super) fn cleat_runs_csv(of: &Comparison) -> String {
     let sides = ["a", "b", "measured_a", "measured_b"];
     let of_metric = |metric: &str| {
         sides
@@ -256,16 +256,19 @@ pub(super) fn passages_csv(of: &Comparison) -> String {
         of_metric("peak"),
         of_metric("after_shake")
     );
-    for passage in &of.passages {
-        for own in &passage.compared.metrics {
+    for cleat_run in &of.cleat_runs {
+        for own in &cleat_run.compared.metrics {
             let metric = |of: &super::records::Metric| {
                 let measured = |place: usize| of.measured.get(place).copied();
                 let shown = |value: Option<f64>| cell(value.map(|value| units::value(value, "m/s^2")));
                 [Some(of.a), Some(of.b), measured(0), measured(1)].map(shown).join(",")
             };
             let (peak, shake) = (metric(&own.peak), metric(&own.after_shake));
-            let (speed, height) = (units::value(passage.speed, "m/s"), units::value(passage.height, "m"));
-            let name = &passage.name;
+            let (speed, height) = (
+                units::value(cleat_run.speed, "m/s"),
+                units::value(cleat_run.height, "m"),
+            );
+            let name = &cleat_run.name;
             let _ = writeln!(out, "{name},{speed},{height},{},{},{peak},{shake}", own.mass, own.axis);
         }
     }

@@ -47,7 +47,7 @@ struct PosteriorDescription {
 
 /// State of a file of results.
 #[derive(Debug, PartialEq)]
-pub(super) enum Standing {
+pub(super) enum FileState {
     /// The file is complete.
     Done,
     /// The file is incomplete or missing.
@@ -97,7 +97,7 @@ impl Ledger {
     ///
     /// # Errors
     /// Fails if the file has other results, or if it cannot be written.
-    pub fn stand_beside(&self, path: &Path) -> Result<Standing, InputError> {
+    pub fn file_state(&self, path: &Path) -> Result<FileState, InputError> {
         let beside = beside(path);
         let own = serde_json::to_value(self).expect("keys are strings");
         let there = std::fs::read_to_string(&beside).ok();
@@ -107,12 +107,12 @@ impl Ledger {
             refuse_others(file, &own, there.as_ref())?;
         }
         if path.exists() {
-            return Ok(Standing::Done);
+            return Ok(FileState::Done);
         }
         let folder = path.parent().unwrap_or(Path::new(""));
         let name = beside.file_name().and_then(|name| name.to_str()).unwrap_or_default();
         put(folder, name, &self.text())?;
-        Ok(Standing::Open)
+        Ok(FileState::Open)
     }
 
     /// The text of the description.

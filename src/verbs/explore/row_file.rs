@@ -7,7 +7,7 @@ use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::model::Model;
 
 use super::existing_rows::ExistingRows;
-use super::ledger::{Choice, Ledger, Standing};
+use super::ledger::{Choice, FileState, Ledger};
 use super::sink::{Sink, unfinished};
 use crate::failure::Failure;
 use crate::interruption;
@@ -48,7 +48,7 @@ pub(super) fn fill<M: Model + ?Sized>(
         counted(rows as usize, "row"),
         path.display()
     );
-    if ledger.stand_beside(path)? == Standing::Done {
+    if ledger.file_state(path)? == FileState::Done {
         return Ok(text + "note: the file was already complete\n");
     }
     let resumed = "finished rows are in";

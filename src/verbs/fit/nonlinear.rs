@@ -3,7 +3,7 @@
 //! The residuals and the sensor errors are those of discovery.
 
 // Its result as text and JSON.
-mod shown;
+mod render;
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -223,15 +223,18 @@ fn correlations(of: &[Correlation]) -> String {
     }
 }
 
+/// Headings of the table of channels.
+pub(super) const CHANNEL_HEADINGS: [&str; 6] = [
+    "channel",
+    "run",
+    "role",
+    "in_the_cost",
+    "fit_magnitude_%",
+    "fit_phase_%",
+];
+
 fn channels(of: &Fitted) -> String {
-    let mut table = Table::new([
-        "channel",
-        "run",
-        "role",
-        "in_the_cost",
-        "fit_magnitude_%",
-        "fit_phase_%",
-    ]);
+    let mut table = Table::new(CHANNEL_HEADINGS);
     for channel in &of.fit.channels {
         table.row(vec![
             channel.name.clone(),

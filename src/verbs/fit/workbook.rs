@@ -79,14 +79,6 @@ fn parameters(workbook: &mut Workbook, of: &Fitted) -> Result<(), XlsxError> {
 }
 
 fn channels(workbook: &mut Workbook, of: &Fitted) -> Result<(), XlsxError> {
-    let headings = [
-        "channel",
-        "run",
-        "role",
-        "in_the_cost",
-        "fit_magnitude_%",
-        "fit_phase_%",
-    ];
     let row = |own: &qcar_runtime::fit::report::ChannelFit| {
         vec![
             own.name.as_str().into(),
@@ -100,7 +92,7 @@ fn channels(workbook: &mut Workbook, of: &Fitted) -> Result<(), XlsxError> {
     table(
         workbook,
         "Fit",
-        &headings.map(String::from),
+        &render::CHANNEL_HEADINGS.map(String::from),
         of.fit.channels.iter().map(row),
     )
     .map(drop)

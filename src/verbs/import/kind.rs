@@ -13,7 +13,7 @@ use super::sensors::Sensors;
 use super::sweep::{SweepParameters, parts, swept};
 use crate::table::number;
 use crate::units;
-use crate::verbs::inspect::{Contents, Course};
+use crate::verbs::inspect::{ChannelSummary, Contents};
 
 /// Significant digits of proposed values.
 const DIGITS: usize = 6;
@@ -120,7 +120,7 @@ pub(super) fn propose(file: &Measured, sensors: &Sensors) -> Vec<Proposed> {
         let known = sensors.known.iter().filter(move |sensor| sensor.guess.drives == drives);
         known.filter_map(|sensor| contents.found(contents.recording.find(&sensor.source).ok()?))
     };
-    let rates = of(true).chain(of(false)).filter_map(|(course, _)| course.rate);
+    let rates = of(true).chain(of(false)).filter_map(|(summary, _)| summary.rate);
     let rate = rates.reduce(f64::max).map(whole);
     let proposed = |kind: Kind, part: Option<Part>| Proposed {
         file: file.seen.clone(),
@@ -143,7 +143,7 @@ pub(super) fn propose(file: &Measured, sensors: &Sensors) -> Vec<Proposed> {
         Some(_) => driven
             .and_then(|driven| driven.whole)
             .map_or(Kind::TimeHistory, Kind::Sweep),
-        None if of(false).any(|(course, _)| is_impact(course)) => Kind::Cleat,
+        None if of(false).any(|(summary, _)| is_impact(summary)) => Kind::Cleat,
         None => curve(contents).unwrap_or(Kind::TimeHistory),
     };
     vec![proposed(kind, None)]
@@ -151,7 +151,7 @@ pub(super) fn propose(file: &Measured, sensors: &Sensors) -> Vec<Proposed> {
 
 /// A file without times, with one displacement and one force.
 fn curve<T>(contents: &Contents<T>) -> Option<Kind> {
-    let timeless = contents.channels().all(|(_, course)| course.start.is_none());
+    let timeless = contents.channels().all(|(_, summary)| summary.start.is_none());
     let only = |quantity: Quantity| {
         let signals = contents.recording.signals.iter();
         let mut of = signals.filter(|signal| quantity_of(&signal.unit) == Some(quantity));
@@ -187,8 +187,8 @@ fn in_units(signal: &Signal) -> Vec<f64> {
     signal.samples.iter().map(value).collect()
 }
 
-fn is_impact(course: &Course) -> bool {
-    let values = course.peak().zip(course.rms);
+fn is_impact(summary: &ChannelSummary) -> bool {
+    let values = summary.peak().zip(summary.rms);
     values.is_some_and(|(peak, rms)| peak > IMPACT * rms)
 }
 

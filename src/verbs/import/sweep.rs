@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use qcar_runtime::campaign::Quantity;
+use qcar_runtime::mean::rms_or_nan;
 
 /// A sine of rising frequency and constant peak velocity.
 #[derive(Clone, Copy, Debug)]
@@ -137,11 +138,7 @@ impl Law {
 
     /// RMS of the relative deviations.
     fn error(&self, halves: &[Half]) -> f64 {
-        let square: f64 = halves
-            .iter()
-            .map(|half| (half.frequency / self.at(half.time) - 1.0).powi(2))
-            .sum();
-        (square / halves.len() as f64).sqrt()
+        rms_or_nan(halves.iter().map(|half| half.frequency / self.at(half.time) - 1.0))
     }
 }
 

@@ -11,18 +11,18 @@ use qcar_signals::read::channels;
 use qcar_signals::samples::Samples;
 use qcar_signals::signal::{Recording, Signal, TimeBase};
 
-use super::course::Course;
+use super::summary::ChannelSummary;
 use crate::failure::Failure;
 
-/// Bytes of a file whose samples are in memory at a time. A longer file is read once if its format allows summaries, and otherwise once for
-/// each such part.
+/// Bytes of a file whose samples are in memory at a time. A longer file is read once if its format allows summaries,
+/// and otherwise once for each such part.
 const AT_ONCE: u64 = 128 << 20;
 
 /// Contents of a file without samples, and the findings in the samples.
 pub(in crate::verbs) struct Contents<T> {
     /// The recording, without samples and times of its signals.
     pub recording: Recording,
-    found: Vec<(Course, Option<T>)>,
+    found: Vec<(ChannelSummary, Option<T>)>,
 }
 
 /// A search in the samples of some channels.
@@ -105,7 +105,7 @@ impl<T> Contents<T> {
         let asked: Vec<usize> = (0..recording.signals.len())
             .filter(|&at| (look.is_in)(&recording.signals[at]))
             .collect();
-        let mut found: Vec<(Course, Option<T>)> = recording
+        let mut found: Vec<(ChannelSummary, Option<T>)> = recording
             .signals
             .iter_mut()
             .map(|signal| (given_back(signal), None))
@@ -128,13 +128,13 @@ impl<T> Contents<T> {
     }
 
     /// The channels, each with its summary.
-    pub fn channels(&self) -> impl Iterator<Item = (&Signal, &Course)> {
-        let found = self.found.iter().map(|(course, _)| course);
+    pub fn channels(&self) -> impl Iterator<Item = (&Signal, &ChannelSummary)> {
+        let found = self.found.iter().map(|(summary, _)| summary);
         self.recording.signals.iter().zip(found)
     }
 
     /// Summary of a channel of the recording, and the result of the search.
-    pub fn found(&self, signal: &Signal) -> Option<&(Course, Option<T>)> {
+    pub fn found(&self, signal: &Signal) -> Option<&(ChannelSummary, Option<T>)> {
         let at = self.recording.signals.iter().position(|own| ptr::eq(own, signal))?;
         self.found.get(at)
     }
@@ -168,7 +168,7 @@ fn is_same(one: &Signal, other: &Signal) -> bool {
 }
 
 /// Summary of a channel and the result of the search; its samples are then released.
-fn looked_into<T>(signal: &mut Signal, look: &Look<T>) -> (Course, Option<T>) {
+fn looked_into<T>(signal: &mut Signal, look: &Look<T>) -> (ChannelSummary, Option<T>) {
     let taken = if (look.is_in)(signal) {
         (look.take)(signal)
     } else {
@@ -178,11 +178,11 @@ fn looked_into<T>(signal: &mut Signal, look: &Look<T>) -> (Course, Option<T>) {
 }
 
 /// Summary of a channel, whose samples are then released.
-fn given_back(signal: &mut Signal) -> Course {
-    let course = Course::of(signal);
+fn given_back(signal: &mut Signal) -> ChannelSummary {
+    let summary = ChannelSummary::of(signal);
     signal.samples = Samples::default();
     signal.time = TimeBase::Unknown;
-    course
+    summary
 }
 
 #[cfg(test)]
@@ -216,20 +216,20 @@ mod tests {
                     take: &|signal| Some(signal.samples.iter().map(f64::to_bits).collect()),
                 };
                 let contents: Contents<Vec<u64>> = Contents::in_parts(&folder.join(name), at_once, &bits).unwrap();
-                let found = contents.found.iter().map(|(course, samples)| {
+                let found = contents.found.iter().map(|(summary, samples)| {
                     let numbers = [
-                        course.min,
-                        course.max,
-                        course.mean,
-                        course.rms,
-                        course.rate,
-                        course.start,
+                        summary.min,
+                        summary.max,
+                        summary.mean,
+                        summary.rms,
+                        summary.rate,
+                        summary.start,
                     ];
                     (
-                        course.samples,
-                        course.missing,
+                        summary.samples,
+                        summary.missing,
                         numbers,
-                        course.sparkline.clone(),
+                        summary.sparkline.clone(),
                         samples.clone(),
                     )
                 });

@@ -6,12 +6,12 @@ use qcar_runtime::metric::{Ground, MetricError, Reading};
 use qcar_runtime::progress::OnProgress;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::sensitivity::{
-    Doubt, Elasticities, Index, Indices, Interval, Plan, Source, elasticities, indices, size,
+    Elasticities, Index, Indices, Interval, ParameterUncertainty, Plan, Source, elasticities, indices, size,
 };
 use serde::Serialize;
 
 use super::subject::Subject;
-use super::uncertainty::Doubts;
+use super::uncertainty::UncertaintySources;
 use crate::json::Ordered;
 
 /// Smaller relative values are rounding errors.
@@ -96,7 +96,7 @@ pub(crate) struct AnalysisSettings<'a> {
     pub metrics: &'a [usize],
     /// Positions of the parameters.
     pub parameters: &'a [usize],
-    pub doubts: &'a Doubts,
+    pub sources: &'a UncertaintySources,
     /// Number of designs of the Sobol indices, seed, and relative range of the parameters.
     pub global: Option<(Plan, f64)>,
 }
@@ -119,7 +119,7 @@ pub(crate) fn gather(
     let about = ground.about();
     let names: Vec<String> = moved.iter().map(|&k| about.parameters[k].name.to_string()).collect();
     let shown = &names[..asked.parameters.len()];
-    let doubt = asked.doubts.doubt(subject, &moved);
+    let uncertainty = asked.sources.uncertainty(subject, &moved);
     let sizes_of: Vec<f64> = moved.iter().map(|&k| size(&subject.values, k)).collect();
     let mut first = 0;
     let mut metric = |(&metric, &size): (&usize, &usize)| {
@@ -130,7 +130,7 @@ pub(crate) fn gather(
             &local,
             (metric, range),
             (shown, &names),
-            (doubt.as_ref(), &sizes_of),
+            (uncertainty.as_ref(), &sizes_of),
         )
     };
     let metrics = asked.metrics.iter().zip(&sizes).map(&mut metric).collect();
@@ -158,7 +158,7 @@ pub(crate) fn gather(
 /// The requested parameters, then all others with a known uncertainty: they contribute to the uncertainty of a metric
 /// in any case.
 fn moved(subject: &Subject, asked: &AnalysisSettings<'_>) -> Vec<usize> {
-    let others = asked.doubts.places(subject).into_iter();
+    let others = asked.sources.places(subject).into_iter();
     let others = others.filter(|place| !asked.parameters.contains(place));
     asked.parameters.iter().copied().chain(others).collect()
 }
@@ -169,7 +169,7 @@ fn result(
     local: &Elasticities,
     (metric, range): (usize, Range<usize>),
     (shown, names): (&[String], &[String]),
-    (doubt, sizes): (Option<&Doubt>, &[f64]),
+    (uncertainty, sizes): (Option<&ParameterUncertainty>, &[f64]),
 ) -> MetricResult {
     let own = &ground.metrics()[metric];
     let run = |at: usize| {
@@ -195,7 +195,7 @@ fn result(
             .clone()
             .map(|at| (run(at), local.elasticities[at][..shown.len()].to_vec()))
             .collect(),
-        doubt: doubt.map(|doubt| doubted(value, names, &doubt.of(&slopes))),
+        doubt: uncertainty.map(|uncertainty| doubted(value, names, &uncertainty.of(&slopes))),
         sobol: None,
         spread: None,
     }
@@ -217,8 +217,8 @@ fn parameters(
         unit: ground.about().parameters[k].unit.to_string(),
         value: subject.values.as_slice()[k],
         stderr: subject.errors.deviations.get(name).copied(),
-        tolerance: (asked.doubts.tolerances.get(&k)).map(|part| (part * subject.values.as_slice()[k]).abs()),
-        per_kelvin: asked.doubts.per_kelvin.get(&k).copied(),
+        tolerance: (asked.sources.tolerances.get(&k)).map(|part| (part * subject.values.as_slice()[k]).abs()),
+        per_kelvin: asked.sources.per_kelvin.get(&k).copied(),
     };
     asked.parameters.iter().zip(names).map(own).collect()
 }

@@ -5,14 +5,14 @@ use std::str::FromStr;
 
 use qcar_runtime::ensemble::{Estimate, Posterior};
 use qcar_runtime::error::InputError;
-use qcar_runtime::sensitivity::{Chance, Doubt, size};
+use qcar_runtime::sensitivity::{Chance, ParameterUncertainty, size};
 
 use super::subject::Subject;
 use crate::failure::flag;
 
 /// The stated uncertainty. Parameters are given by their positions; none is tied to another.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Doubts {
+pub(crate) struct UncertaintySources {
     /// True if the errors of the fit are included.
     pub fit: bool,
     /// Parameters with their relative tolerances: uniform distributions.
@@ -43,7 +43,7 @@ impl FromStr for Temperatures {
 /// Smallest value of a drawn parameter relative to its estimate; smaller values are not physical.
 const LEAST: f64 = 1e-3;
 
-impl Doubts {
+impl UncertaintySources {
     /// The uncertain parameters.
     pub fn places(&self, subject: &Subject) -> Vec<usize> {
         let all = 0..subject.values.as_slice().len();
@@ -75,7 +75,7 @@ impl Doubts {
     }
 
     /// The uncertainty of these parameters to first order; `None` if all are certain.
-    pub fn doubt(&self, subject: &Subject, places: &[usize]) -> Option<Doubt> {
+    pub fn uncertainty(&self, subject: &Subject, places: &[usize]) -> Option<ParameterUncertainty> {
         let of = |known: &BTreeMap<usize, f64>| -> Vec<f64> {
             places
                 .iter()
@@ -89,11 +89,11 @@ impl Doubts {
         if all.all(|own| *own == 0.0) {
             return None;
         }
-        let mut doubt = Doubt::none(places.len());
-        doubt.add_errors(&errors, |i, j| self.correlation(subject, [places[i], places[j]]));
-        doubt.add_tolerances(&tolerances);
-        doubt.add_temperature(&per_kelvin, self.temperatures);
-        Some(doubt)
+        let mut uncertainty = ParameterUncertainty::none(places.len());
+        uncertainty.add_errors(&errors, |i, j| self.correlation(subject, [places[i], places[j]]));
+        uncertainty.add_tolerances(&tolerances);
+        uncertainty.add_temperature(&per_kelvin, self.temperatures);
+        Some(uncertainty)
     }
 
     /// The uncertainty as random draws.

@@ -8,19 +8,17 @@ use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::mean::deviation;
 use qcar_runtime::metric::Course;
 use qcar_runtime::model::{About, Quantity, Signal, SignalKind};
-use qcar_runtime::progress::OnProgress;
 use qcar_runtime::response::parameters::Values;
-use qcar_runtime::simulate::{Car, Drive, Ride, Settings, Variant, rides, tyre};
+use qcar_runtime::simulate::{Drive, Ride, Variant, tyre};
 use qcar_signals::mdf::write::Channel;
 use serde::Serialize;
 
 use super::spectra::Spectra;
-use super::{guessed, render};
+use super::{guessed, render, simulate_rides};
 use crate::catalogue::Loaded;
 use crate::files::put;
 use crate::histories::{History, Kind};
 use crate::json;
-use crate::progress::while_counting;
 use crate::roads::{RequestedRoad, courses};
 use crate::table::{Table, number};
 use crate::units;
@@ -104,16 +102,15 @@ pub(super) fn roll(
     model.check_inertias(values.as_slice())?;
     let (tyre, load) = tyre(campaign)?;
     let courses = courses(roads, &[])?;
-    let car = Car {
-        model: &**model,
-        parameters: values.as_slice(),
-        tyre,
-        load,
-        variant,
-    };
     let drives: Vec<Drive<'_>> = courses.iter().map(Course::drive).collect();
-    let simulate = |on_progress: OnProgress<'_>| rides(&car, &drives, &Settings::default(), on_progress);
-    let ridden = while_counting(format!("{}: road", campaign.name), simulate);
+    let ridden = simulate_rides(
+        format!("{}: road", campaign.name),
+        model,
+        values,
+        (tyre, load),
+        &drives,
+        variant,
+    );
     let mut rolled = Rolled {
         campaign: campaign.name.clone(),
         model: model.about().name.to_string(),

@@ -4,6 +4,7 @@ use qcar_runtime::campaign::{Quantity, Role};
 use qcar_runtime::discover::Evidence;
 use qcar_runtime::discover::observe::{Kind, Series, Stimulus};
 use qcar_runtime::discover::posterior::Explanation;
+use qcar_runtime::mean::{deviation, rms};
 use qcar_runtime::transmissibility::Point;
 use serde::Serialize;
 
@@ -82,10 +83,7 @@ fn modelled(of: &Explanation, place: usize, series: &Series) -> Vec<f64> {
 }
 
 fn nrms(measured: &[f64], modelled: &[f64]) -> f64 {
-    let mean = measured.iter().sum::<f64>() / measured.len() as f64;
-    let left: f64 = measured.iter().zip(modelled).map(|(a, b)| (a - b).powi(2)).sum();
-    let all: f64 = measured.iter().map(|value| (value - mean).powi(2)).sum();
-    (left / all).sqrt()
+    rms(measured.iter().zip(modelled).map(|(a, b)| a - b)) / deviation(measured)
 }
 
 /// The prescribed travel of a force; `None` without any.

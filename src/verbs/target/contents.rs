@@ -27,7 +27,7 @@ pub(super) struct Contents<'a> {
 #[derive(Serialize)]
 struct DependentParameter<'a> {
     /// Position of the parameter in the file.
-    knob: usize,
+    variable: usize,
     parameter: &'a str,
     factor: f64,
     constant: f64,
@@ -63,7 +63,7 @@ impl<'a> Contents<'a> {
     ) -> Self {
         let rides = (0..ground.courses().len()).filter_map(|course| ride((subject, ground), course, axles));
         let moves = moves.iter().map(|own| DependentParameter {
-            knob: own.knob,
+            variable: own.variable,
             parameter: &ground.about().parameters[own.parameter].name,
             factor: own.factor,
             constant: own.constant,

@@ -39,12 +39,12 @@ pub(super) fn intervals(
     plan: &Plan,
     design: &[f64],
 ) -> Option<Vec<Interval>> {
-    let places = plan.doubts.places(subject);
-    let doubt = plan.doubts.doubt(subject, &places)?;
+    let places = plan.sources.places(subject);
+    let uncertainty = plan.sources.uncertainty(subject, &places)?;
     let values = axle.values_of(design);
     let directions: Vec<Vec<f64>> = places.iter().map(|&place| direction(&values, place)).collect();
     let found = ground.measure_with(&values, &directions).ok()?;
-    Some(found.slopes.iter().map(|slopes| doubt.of(slopes)).collect())
+    Some(found.slopes.iter().map(|slopes| uncertainty.of(slopes)).collect())
 }
 
 /// The design of least cost at which each target holds with a required probability. The margins of the limits follow
@@ -129,11 +129,11 @@ pub(super) fn sureness(
 }
 
 fn sources(subject: &Subject, plan: &Plan) -> Ordered<Vec<String>> {
-    let doubts = &plan.doubts;
+    let sources = &plan.sources;
     let name = |place: usize| subject.model.about().parameters[place].name.to_string();
-    let fitted = doubts.fitted(subject).into_iter().map(name).collect();
-    let tolerances = doubts.tolerances.keys().map(|&place| name(place)).collect();
-    let per_kelvin = doubts.per_kelvin.keys().map(|&place| name(place)).collect();
+    let fitted = sources.fitted(subject).into_iter().map(name).collect();
+    let tolerances = sources.tolerances.keys().map(|&place| name(place)).collect();
+    let per_kelvin = sources.per_kelvin.keys().map(|&place| name(place)).collect();
     let lists: [Vec<String>; 3] = [fitted, tolerances, per_kelvin];
     Source::ALL
         .iter()

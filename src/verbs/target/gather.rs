@@ -150,36 +150,24 @@ pub(super) fn gather(
     seed: u64,
     wanted: [bool; 2],
 ) -> Option<Answer> {
-    let axle = Axle {
-        ground,
-        values: subject.values.clone(),
-        moves: plan.moves.clone(),
-        knobs: plan.knobs.len(),
-        means: plan.means.clone(),
-        chance,
-    };
-    let mut task = Task {
-        designs: &axle,
-        knobs: plan.knobs.clone(),
-        limits: plan.limits.clone(),
-        couplings: plan.couplings.clone(),
-    };
+    let axle = plan.axle(subject, ground, chance);
+    let mut task = plan.task(&axle);
     let intervals = |design: &[f64]| design_uncertainty::intervals(subject, (ground, &axle), plan, design);
     let found = design_uncertainty::design(&mut task, &axle, seed, plan.sure)?;
     let known = [found.design.clone()];
     let front = wanted[0].then(|| search_front(&task, plan, &known, seed));
-    let doubts = intervals(&found.design);
+    let uncertain = intervals(&found.design);
     let sureness = design_uncertainty::sureness(subject, plan, &task, &axle, &found.design);
     let space = match wanted[1] && found.met {
         true => search_space(task.clone(), (&axle, &found), plan, &known, seed),
         false => None,
     };
     let cuts = space.as_ref().map_or(Vec::new(), |space| {
-        let cut = |&knobs| cut(&task, space, knobs, DOTS, seed);
+        let cut = |&variables| cut(&task, space, variables, DOTS, seed);
         plan.cuts.iter().map(cut).collect()
     });
     let slopes = axle.slopes(&found.design);
-    let certain = sureness.as_ref().zip(doubts);
+    let certain = sureness.as_ref().zip(uncertain);
     Some(Answer {
         subject: subject.name.clone(),
         model: subject.model.about().name.to_string(),
@@ -232,15 +220,15 @@ fn search_space(
 }
 
 fn parameters(plan: &Plan, found: &Found, space: Option<&Space>) -> Vec<Parameter> {
-    let all = plan.knobs.iter().zip(&plan.units).zip(&found.design).enumerate();
-    all.map(|(k, ((knob, unit), &design))| Parameter {
-        name: knob.name.clone(),
+    let all = plan.variables.iter().zip(&plan.units).zip(&found.design).enumerate();
+    all.map(|(k, ((variable, unit), &design))| Parameter {
+        name: variable.name.clone(),
         unit: unit.clone(),
-        range: [knob.lower, knob.upper],
-        today: knob.today,
+        range: [variable.lower, variable.upper],
+        today: variable.today,
         design,
         interval: space.map(|space| space.intervals[k]),
-        at_bound: match knob.place(design) {
+        at_bound: match variable.place(design) {
             place if place < 1e-3 => Some("lower"),
             place if place > 1.0 - 1e-3 => Some("upper"),
             _ => None,
@@ -285,7 +273,7 @@ fn sensitivity(plan: &Plan, slopes: &[Vec<f64>], found: &Found) -> Vec<Sensitivi
                 .map(|&at| slopes[at][k] * found.design[k] / found.values[at]);
             rounded(all.sum::<f64>() / results.len() as f64)
         };
-        let names = plan.knobs.iter().map(|knob| knob.name.clone()).enumerate();
+        let names = plan.variables.iter().map(|variable| variable.name.clone()).enumerate();
         Sensitivity {
             metric: metric.to_string(),
             elasticities: names.map(|(k, name)| (name, elasticity(k))).collect(),
@@ -300,7 +288,7 @@ pub(super) fn design(plan: &Plan, answer: &Answer, subject: &Subject) -> Values 
     for own in &plan.moves {
         values.set(
             own.parameter,
-            own.factor * answer.parameters[own.knob].design + own.constant,
+            own.factor * answer.parameters[own.variable].design + own.constant,
         );
     }
     values
@@ -313,12 +301,12 @@ fn targets(
     space: Option<&Space>,
     sure: Option<(&DesignUncertainty, Vec<Interval>)>,
 ) -> Vec<Target> {
-    let places = plan.doubts.places(subject);
+    let places = plan.sources.places(subject);
     let names: Vec<String> = places
         .iter()
         .map(|&place| subject.model.about().parameters[place].name.to_string())
         .collect();
-    let today: Vec<f64> = plan.knobs.iter().map(|knob| knob.today).collect();
+    let today: Vec<f64> = plan.variables.iter().map(|variable| variable.today).collect();
     let target = |at: usize| {
         let wanted = &plan.wanted[at];
         let (sense, limit, values) = match plan.limits.get(at) {
@@ -364,7 +352,7 @@ fn front_answer(plan: &Plan, found: &Found, front: Front) -> FrontAnswer {
         today: plan.today[aim.result],
         design: found.values[aim.result],
     };
-    let names = || plan.knobs.iter().map(|knob| knob.name.clone());
+    let names = || plan.variables.iter().map(|variable| variable.name.clone());
     let point = |own: qcar_runtime::target::Point| FrontPoint {
         values: plan.aims.iter().map(|aim| own.values[aim.result]).collect(),
         cost: own.cost,
@@ -394,7 +382,7 @@ fn space_answer(plan: &Plan, space: &Space, cuts: Vec<Cut>) -> SpaceAnswer {
         cuts: cuts
             .into_iter()
             .map(|cut| CutAnswer {
-                parameters: cut.knobs.map(|knob| plan.knobs[knob].name.clone()),
+                parameters: cut.variables.map(|variable| plan.variables[variable].name.clone()),
                 dots: cut.dots.into_iter().map(dot).collect(),
             })
             .collect(),

@@ -1,7 +1,7 @@
 //! From the file to a task: names become positions, texts become numbers in SI.
 
 // The parameters that may change.
-mod knobs;
+mod variables;
 // Constraints between parameters.
 mod couplings;
 // Limits of metrics.
@@ -15,7 +15,8 @@ use qcar_runtime::error::{InputError, Problem};
 use qcar_runtime::mean::mean;
 use qcar_runtime::metric::{Ground, Reading};
 use qcar_runtime::response::parameters::Values;
-use qcar_runtime::target::{Coupling, Knob, Limit, Move, Sense};
+use qcar_runtime::sensitivity::Chance;
+use qcar_runtime::target::{Axle, Coupling, DesignVariable, Limit, Move, Sense, Task};
 use toml::Spanned;
 
 use super::file::{Amount, AmountKind, Read};
@@ -23,13 +24,13 @@ use crate::failure::Failure;
 use crate::verbs::sensitivity::refused;
 use crate::verbs::sensitivity::selection;
 use crate::verbs::sensitivity::subject::Subject;
-use crate::verbs::sensitivity::uncertainty::Doubts;
+use crate::verbs::sensitivity::uncertainty::UncertaintySources;
 use limits::Sought;
 
 /// A task with the names and units of its parts.
 pub(super) struct Plan {
-    pub knobs: Vec<Knob>,
-    /// Unit of each knob.
+    pub variables: Vec<DesignVariable>,
+    /// Unit of each design variable.
     pub units: Vec<String>,
     pub moves: Vec<Move>,
     pub limits: Vec<Limit>,
@@ -45,7 +46,7 @@ pub(super) struct Plan {
     pub probability: f64,
     pub cuts: Vec<[usize; 2]>,
     pub generations: usize,
-    pub doubts: Doubts,
+    pub sources: UncertaintySources,
     /// Required probability of each target at the design, if the file states one.
     pub sure: Option<f64>,
 }
@@ -87,12 +88,12 @@ impl Plan {
             ground,
             problems: Vec::new(),
         };
-        let (knobs, units, mut moves) = planner.knobs();
-        let couplings = planner.couplings(&knobs, &mut moves);
+        let (variables, units, mut moves) = planner.variables();
+        let couplings = planner.couplings(&variables, &mut moves);
         let sought = planner.sought();
         let fronts = planner.fronts();
-        let (probability, cuts) = planner.space(&knobs);
-        let (doubts, sure) = planner.uncertainty();
+        let (probability, cuts) = planner.space(&variables);
+        let (sources, sure) = planner.uncertainty();
         planner.finish(Some(()))?;
         let Planner { ground, .. } = &mut planner;
         let means = choose(ground, &sought, &fronts);
@@ -112,7 +113,7 @@ impl Plan {
         Ok(Self {
             aims: aims(planner.ground, &fronts, measured.len()),
             couplings: couplings.into_iter().map(|(_, own)| own).collect(),
-            knobs,
+            variables,
             units,
             moves,
             limits,
@@ -121,10 +122,32 @@ impl Plan {
             today,
             probability,
             cuts,
-            doubts,
+            sources,
             sure,
             generations: generations.unwrap_or(40),
         })
+    }
+
+    /// The designs of the task: the subject with its parameters at values of the design variables.
+    pub fn axle<'a>(&self, subject: &Subject, ground: &'a Ground<'a>, chance: Chance) -> Axle<'a> {
+        Axle {
+            ground,
+            values: subject.values.clone(),
+            moves: self.moves.clone(),
+            variables: self.variables.len(),
+            means: self.means.clone(),
+            chance,
+        }
+    }
+
+    /// The task for these designs.
+    pub fn task<'a>(&self, designs: &'a Axle<'_>) -> Task<'a> {
+        Task {
+            designs,
+            variables: self.variables.clone(),
+            limits: self.limits.clone(),
+            couplings: self.couplings.clone(),
+        }
     }
 }
 
@@ -198,9 +221,9 @@ impl<'a> Planner<'a, '_> {
         }
     }
 
-    /// The knob of a parameter that may change.
-    fn parameter_knob(&mut self, name: &Spanned<String>, key: &str, knobs: &[Knob]) -> Option<usize> {
-        let found = knobs.iter().position(|knob| knob.name == *name.get_ref());
+    /// The design variable of a parameter that may change.
+    fn variable_of(&mut self, name: &Spanned<String>, key: &str, variables: &[DesignVariable]) -> Option<usize> {
+        let found = variables.iter().position(|variable| variable.name == *name.get_ref());
         // Where its own table is wrong, this has been said.
         let is_named = self
             .read

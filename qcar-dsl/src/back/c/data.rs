@@ -25,26 +25,15 @@ pub fn data(about: &About, values: &[f64]) -> String {
         .parameter_jacobian
         .iter()
         .map(|&(y, row, p)| format!("{}, {row}, {p}", u8::from(y)));
-    let array = |kind: &str, name: &str, rows: Vec<String>, zeros: &str| {
-        let rows: String = rows.iter().map(|row| format!("    {{{row}}},\n")).collect();
-        format!("const {model}_{kind} {model}_{name}[] = {{\n{rows}    {{{zeros}}}\n}};\n")
-    };
+    let matrices = about.matrices.iter().map(entry);
+    let array = |kind, name, rows, zeros| array(model, kind, name, rows, zeros);
+    let parameter = "0, 0, 0, 0.0, 0.0, 0.0";
     [
-        array(
-            "parameter",
-            "parameter_list",
-            parameters.collect(),
-            "0, 0, 0, 0.0, 0.0, 0.0",
-        ),
+        array("parameter", "parameter_list", parameters.collect(), parameter),
         array("signal", "state_list", states.collect(), "0, 0"),
         array("signal", "input_list", inputs.collect(), "0, 0"),
         array("signal", "output_list", outputs.collect(), "0, 0"),
-        array(
-            "entry",
-            "matrices_at",
-            about.matrices.iter().map(entry).collect(),
-            "0, 0, 0",
-        ),
+        array("entry", "matrices_at", matrices.collect(), "0, 0, 0"),
         array(
             "sensitivity",
             "sensitivities_at",
@@ -59,6 +48,12 @@ pub fn data(about: &About, values: &[f64]) -> String {
         ),
     ]
     .join("\n")
+}
+
+/// An array of structs, which ends with one of `zeros`: C has no empty array.
+fn array(model: &str, kind: &str, name: &str, rows: Vec<String>, zeros: &str) -> String {
+    let rows: String = rows.iter().map(|row| format!("    {{{row}}},\n")).collect();
+    format!("const {model}_{kind} {model}_{name}[] = {{\n{rows}    {{{zeros}}}\n}};\n")
 }
 
 fn entry(entry: &Entry) -> String {

@@ -13,7 +13,7 @@ pub fn about(about: &About) -> String {
     [
         format!(
             "/// Names, units, sizes and sparsity.
-pub static ABOUT: seam::About = seam::About {{
+pub static ABOUT: interface::About = interface::About {{
     name: Borrowed({:?}),
     doc: Borrowed({:?}),
     parameters: Borrowed(&ABOUT_PARAMETERS),
@@ -59,8 +59,8 @@ fn array(name: &str, kind: &str, items: Vec<String>) -> String {
     table(
         "",
         name,
-        &format!("seam::{kind}"),
-        items.iter().map(|item| format!("seam::{kind} {item},")).collect(),
+        &format!("interface::{kind}"),
+        items.iter().map(|item| format!("interface::{kind} {item},")).collect(),
     )
 }
 
@@ -77,14 +77,14 @@ fn text(text: &str) -> String {
 fn parameters(about: &About) -> String {
     let item = |p: &Parameter| {
         let default = match p.default {
-            Default::None => "seam::Default::None".to_string(),
-            Default::Value(value) => format!("seam::Default::Value({value:?})"),
-            Default::Same(other) => format!("seam::Default::Same({other})"),
+            Default::None => "interface::Default::None".to_string(),
+            Default::Value(value) => format!("interface::Default::Value({value:?})"),
+            Default::Same(other) => format!("interface::Default::Same({other})"),
         };
         let clock = match p.clock {
             None => "None",
-            Some(Clock::Seconds) => "Some(seam::Clock::Seconds)",
-            Some(Clock::PartOfRun) => "Some(seam::Clock::PartOfRun)",
+            Some(Clock::Seconds) => "Some(interface::Clock::Seconds)",
+            Some(Clock::PartOfRun) => "Some(interface::Clock::PartOfRun)",
         };
         format!(
             "{{ name: {}, unit: {}, doc: {}, default: {default}, range: {:?}, known: {}, clock: {clock} }}",
@@ -110,7 +110,7 @@ fn states(about: &About) -> String {
             StateKind::Inner => "Inner",
         };
         format!(
-            "{{ name: {}, unit: {}, location: {}, axis: {}, kind: seam::StateKind::{kind} }}",
+            "{{ name: {}, unit: {}, location: {}, axis: {}, kind: interface::StateKind::{kind} }}",
             text(&s.name),
             text(&s.unit),
             text(&s.location),
@@ -128,7 +128,7 @@ fn inputs(about: &About) -> String {
             InputKind::Gravity => "Gravity".into(),
         };
         format!(
-            "{{ name: {}, unit: {}, axis: {}, kind: seam::InputKind::{kind} }}",
+            "{{ name: {}, unit: {}, axis: {}, kind: interface::InputKind::{kind} }}",
             text(&i.name),
             text(&i.unit),
             text(&i.axis)
@@ -219,13 +219,13 @@ fn contact(about: &About) -> String {
     let axis = |a: &ContactAxis| {
         let (position, velocity) = (a.position, a.velocity);
         format!(
-            "seam::ContactAxis {{ axis: {}, position: {position}, velocity: {velocity} }}",
+            "interface::ContactAxis {{ axis: {}, position: {position}, velocity: {velocity} }}",
             text(&a.axis)
         )
     };
     let axes = contact.axes.iter().map(axis).collect::<Vec<_>>().join(", ");
     format!(
-        "Some(seam::ContactAbout {{ link: {}, axes: Borrowed(&[{axes}]) }})",
+        "Some(interface::ContactAbout {{ link: {}, axes: Borrowed(&[{axes}]) }})",
         contact.link
     )
 }
@@ -261,7 +261,7 @@ fn parameter_jacobian(about: &About) -> String {
         .iter()
         .zip(names)
         .map(|(entry, name)| format!("{entry:?}, // {name}"));
-    let documentation = "/// The nonzeros of ∂f/∂p and ∂h/∂p: is it an output, row, parameter.\npub ";
+    let documentation = "/// The nonzeros of ∂f/∂p and ∂h/∂p: true for an output, row, parameter.\npub ";
     table(documentation, "PARAMETER_JACOBIAN", "(bool, u16, u16)", items.collect())
 }
 
@@ -276,9 +276,9 @@ fn signal(signal: &Signal) -> String {
         SignalKind::Stretch => "Stretch".into(),
     };
     let (location, axis) = (text(&signal.location), text(&signal.axis));
-    format!("seam::Signal {{ location: {location}, axis: {axis}, kind: seam::SignalKind::{kind} }}")
+    format!("interface::Signal {{ location: {location}, axis: {axis}, kind: interface::SignalKind::{kind} }}")
 }
 
 fn quantity(quantity: Quantity) -> String {
-    format!("seam::Quantity::{quantity:?}")
+    format!("interface::Quantity::{quantity:?}")
 }

@@ -34,11 +34,11 @@ impl Form {
             Form::Sets => vec![
                 ("sets", format!("&{}<'_>", sets(function))),
                 ("first", "usize".into()),
-                ("out", format!("&mut [seam::Lanes; {results}]")),
+                ("out", format!("&mut [interface::Lanes; {results}]")),
             ],
             Form::Lines(outputs) => vec![
-                ("constants", "&[seam::Lanes; CONSTANTS]".into()),
-                (FREQUENCIES, "&seam::Lanes".into()),
+                ("constants", "&[interface::Lanes; CONSTANTS]".into()),
+                (FREQUENCIES, "&interface::Lanes".into()),
                 ("first", "usize".into()),
                 ("out", format!("&mut LinesMut<'_, V, {outputs}, {results}>")),
             ],
@@ -102,7 +102,7 @@ fn of_number(argument: &str) -> &'static str {
         "constants" => "&[f64; CONSTANTS]",
         "x" => "&[f64; STATES]",
         "u" => "&[f64; INPUTS]",
-        "contact" => "&seam::Contact",
+        "contact" => "&interface::Contact",
         _ => "f64",
     }
 }
@@ -148,8 +148,9 @@ fn doc(text: &str, count: usize) -> String {
         .collect()
 }
 
-/// The `inline` attribute. A function that runs thousands of times in a ride is inlined into its caller. A piece, which has no name of
-/// its own, is not: inlined, the pieces would again be as long as the whole program. Functions over vectors are not inlined.
+/// The `inline` attribute. A function that runs thousands of times in a ride is inlined into its caller. A piece, which
+/// has no name of its own, is not: inlined, the pieces would again be as long as the whole program. Functions over
+/// vectors are not inlined.
 fn inline(form: Form, name: &str) -> &'static str {
     match (form, name) {
         (Form::Numbers, "rolling_derivative") => "#[inline]\n",

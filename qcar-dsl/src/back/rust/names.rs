@@ -13,7 +13,7 @@ const RESERVED: &[&str] = &[
     "first",
     "kept",
     "out",
-    "seam",
+    "interface",
     "sets",
     "sign",
     "table",

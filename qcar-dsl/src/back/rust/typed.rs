@@ -6,9 +6,8 @@ use crate::program::schedule::Compiled;
 
 /// Sizes, and the positions of states, inputs and outputs.
 pub fn sizes(about: &About) -> String {
-    let size = |name: &str, what: &str, size: usize| {
-        format!("/// How many {what} there are.\npub const {name}: usize = {size};\n")
-    };
+    let size =
+        |name: &str, what: &str, size: usize| format!("/// Number of {what}.\npub const {name}: usize = {size};\n");
     [
         size("PARAMETERS", "parameters", about.parameters.len()),
         size("STATES", "states", about.states.len()),
@@ -28,12 +27,55 @@ fn places<'a>(what: &str, vector: &str, names: impl Iterator<Item = (&'a str, &'
         format!("    /// `{name}`, {unit}.\n    pub const {constant}: usize = {place};\n")
     };
     let constants: String = names.enumerate().map(constant).collect();
-    format!("\n/// Places in `{vector}`.\npub mod {what} {{\n{constants}}}\n")
+    format!("\n/// Positions in `{vector}`.\npub mod {what} {{\n{constants}}}\n")
 }
 
 /// The functions over nalgebra's types.
 pub fn functions(compiled: &Compiled) -> String {
-    let about = &compiled.about;
+    MOTION.to_string() + &matrices(&compiled.about)
+}
+
+/// The functions of a prepared parameter set, which are the same for every model.
+const MOTION: &str = "\
+/// The constants of a parameter set: values that depend on the parameters alone, computed once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prepared(pub [f64; CONSTANTS]);
+
+impl Prepared {
+    /// Computes the constants of a parameter set.
+    pub fn new(p: &Parameters) -> Prepared {
+        let mut constants = [0.0; CONSTANTS];
+        straight::prepare(&p.to_array(), &mut constants);
+        Prepared(constants)
+    }
+}
+
+/// The equations of motion `dx = f(x, u)`, see [`straight::derivative`].
+pub fn derivative(
+    prepared: &Prepared,
+    x: &SVector<f64, STATES>,
+    u: &SVector<f64, INPUTS>,
+) -> SVector<f64, STATES> {
+    let mut dx = SVector::zeros();
+    straight::derivative(&prepared.0, &x.data.0[0], &u.data.0[0], &mut dx.data.0[0]);
+    dx
+}
+
+/// The outputs `y = h(x, u)`.
+pub fn outputs(
+    prepared: &Prepared,
+    x: &SVector<f64, STATES>,
+    u: &SVector<f64, INPUTS>,
+) -> SVector<f64, OUTPUTS> {
+    let mut y = SVector::zeros();
+    straight::outputs(&prepared.0, &x.data.0[0], &u.data.0[0], &mut y.data.0[0]);
+    y
+}
+
+";
+
+/// The functions of the matrices and their derivatives; of a nonlinear model they take a state and an input.
+fn matrices(about: &About) -> String {
     let (point, zero, at) = match about.linear {
         true => ("", "&[0.0; STATES], &[0.0; INPUTS]", ""),
         false => (
@@ -43,42 +85,7 @@ pub fn functions(compiled: &Compiled) -> String {
         ),
     };
     format!(
-        "/// A parameter set made ready: what depends on the parameters alone is computed once.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Prepared(pub [f64; CONSTANTS]);
-
-impl Prepared {{
-    /// Makes a parameter set ready.
-    pub fn new(p: &Parameters) -> Prepared {{
-        let mut constants = [0.0; CONSTANTS];
-        straight::prepare(&p.to_array(), &mut constants);
-        Prepared(constants)
-    }}
-}}
-
-/// The equations of motion `dx = f(x, u)`, see [`straight::derivative`].
-pub fn derivative(
-    prepared: &Prepared,
-    x: &SVector<f64, STATES>,
-    u: &SVector<f64, INPUTS>,
-) -> SVector<f64, STATES> {{
-    let mut dx = SVector::zeros();
-    straight::derivative(&prepared.0, &x.data.0[0], &u.data.0[0], &mut dx.data.0[0]);
-    dx
-}}
-
-/// The outputs `y = h(x, u)`.
-pub fn outputs(
-    prepared: &Prepared,
-    x: &SVector<f64, STATES>,
-    u: &SVector<f64, INPUTS>,
-) -> SVector<f64, OUTPUTS> {{
-    let mut y = SVector::zeros();
-    straight::outputs(&prepared.0, &x.data.0[0], &u.data.0[0], &mut y.data.0[0]);
-    y
-}}
-
-/// A = ∂f/∂x, B = ∂f/∂u, C = ∂h/∂x and D = ∂h/∂u{at}.
+        "/// A = ∂f/∂x, B = ∂f/∂u, C = ∂h/∂x and D = ∂h/∂u{at}.
 pub fn state_space(p: &Parameters{point}) -> StateSpace<STATES, INPUTS, OUTPUTS> {{
     let mut nonzeros = [0.0; {matrices}];
     straight::matrices(&p.to_array(), {zero}, &mut nonzeros);

@@ -30,8 +30,8 @@ pub struct Vectors {
 
 /// The functions of several parameter sets and of lines of a response.
 ///
-/// A response to a force is generated over four numbers only: with vectors of eight for all responses, rustc would take a quarter
-/// longer, and most fits use responses to a road.
+/// A response to a force is generated over four numbers only: with vectors of eight for all responses, rustc would take
+/// a quarter longer, and most fits use responses to a road.
 pub fn vectors(straight: &Straight, functions: &[Function], about: &About) -> Vectors {
     let mut vectors = Vectors::default();
     for own in functions {
@@ -94,8 +94,8 @@ struct {type_name}<'a> {{
 {fields}}}
 
 impl Sets<{results}> for {type_name}<'_> {{
-    const FOUR: unsafe fn(&Self, usize, &mut [seam::Lanes; {results}]) = wide::four::{name};
-    const EIGHT: unsafe fn(&Self, usize, &mut [seam::Lanes; {results}]) = wide::eight::{name};
+    const FOUR: unsafe fn(&Self, usize, &mut [interface::Lanes; {results}]) = wide::four::{name};
+    const EIGHT: unsafe fn(&Self, usize, &mut [interface::Lanes; {results}]) = wide::eight::{name};
 
     fn one(&self, set: usize, out: &mut [f64; {results}]) {{
         straight::{name}({of_one}, out);
@@ -110,12 +110,12 @@ impl Sets<{results}> for {type_name}<'_> {{
 /// The type of an argument for several parameter sets.
 fn field(argument: &str) -> &'static str {
     match argument {
-        "p" => "[seam::Lanes; PARAMETERS]",
-        "constants" => "[seam::Lanes; CONSTANTS]",
-        "x" => "[seam::Lanes; STATES]",
-        "u" => "[seam::Lanes; INPUTS]",
-        "contact" => "seam::Contacts",
-        _ => "seam::Lanes",
+        "p" => "[interface::Lanes; PARAMETERS]",
+        "constants" => "[interface::Lanes; CONSTANTS]",
+        "x" => "[interface::Lanes; STATES]",
+        "u" => "[interface::Lanes; INPUTS]",
+        "contact" => "interface::Contacts",
+        _ => "interface::Lanes",
     }
 }
 

@@ -82,19 +82,7 @@ impl Resolver<'_> {
         self.add_stretch(&mut place.locals, &builder);
         self.add_statements(body, &mut place, &mut builder);
         let terms = std::mem::take(&mut builder.terms);
-        builder.rolling = true;
-        let mut rolling = None;
-        for statement in body {
-            let LawStatement::Rolling(span, body) = statement else {
-                continue;
-            };
-            if rolling.is_some() {
-                self.report(mistakes::second_rolling(*span));
-                builder.mistaken = true;
-            }
-            self.add_statements(body, &mut place.clone(), &mut builder);
-            rolling = Some(std::mem::take(&mut builder.terms));
-        }
+        let rolling = self.rolling(body, &place, &mut builder);
         if builder.mistaken {
             return Err(Reported);
         }
@@ -106,6 +94,24 @@ impl Resolver<'_> {
             },
             rolling,
         ))
+    }
+
+    /// The terms of the `rolling` block; `None` without one.
+    fn rolling(&mut self, body: &[LawStatement], place: &Place, builder: &mut LawBuilder) -> Option<Vec<Term>> {
+        builder.rolling = true;
+        let mut terms = None;
+        for statement in body {
+            let LawStatement::Rolling(span, body) = statement else {
+                continue;
+            };
+            if terms.is_some() {
+                self.report(mistakes::second_rolling(*span));
+                builder.mistaken = true;
+            }
+            self.add_statements(body, &mut place.clone(), builder);
+            terms = Some(std::mem::take(&mut builder.terms));
+        }
+        terms
     }
 
     /// Adds the names `s` and `v`.

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use super::super::contents::{Axis, Dynamometer, Recording, Road, Role, Run, Spacing, Sweep, Tap, Test};
+use super::super::contents::{Axis, ChannelMapping, Dynamometer, Recording, Road, Role, Run, Spacing, Sweep, Test};
 use super::super::fields::Section;
+use super::super::mapping;
 use super::super::recorded::{self, Files};
-use super::super::tap;
 use super::sensors::Sensor;
 use super::{CURVE, DYNAMIC_CURVE, FORCES};
 use crate::spelling;
@@ -23,9 +23,9 @@ pub(super) struct RunContext<'a> {
 pub(super) fn run(section: &Section<'_>, known: &RunContext<'_>) -> Option<Run> {
     let (file, role) = (section.text("file"), section.choice("role", Role::NAMES));
     let (name, without) = (section.optional_text("name"), without(section, known));
-    let window = tap::window(section);
+    let window = mapping::window(section);
     let (read, columns) = section.choice("kind", KINDS)?;
-    let (columns, mapped) = tap::columns(section, columns)?;
+    let (columns, mapped) = mapping::columns(section, columns)?;
     let mapped = mapped
         || known
             .sensors
@@ -80,8 +80,8 @@ fn sample_rate(section: &Section<'_>, known: &RunContext<'_>, file: Option<&Stri
     let Some(file) = file.filter(|_| !section.has("sample_rate")) else {
         return section.positive("sample_rate", "Hz");
     };
-    let taps: Vec<&Tap> = known.sensors?.iter().map(|sensor| &sensor.tap).collect();
-    let highest = recorded::highest_rate(known.files, &known.folder.join(file), &taps);
+    let mappings: Vec<&ChannelMapping> = known.sensors?.iter().map(|sensor| &sensor.mapping).collect();
+    let highest = recorded::highest_rate(known.files, &known.folder.join(file), &mappings);
     highest.map_err(|error| section.adopt(error)).ok()
 }
 

@@ -2,15 +2,15 @@
 
 use std::path::Path;
 
-use super::super::contents::{Axis, Channel, Quantity, Side, Tap};
+use super::super::contents::{Axis, Channel, ChannelMapping, Quantity, Side};
 use super::super::fields::{Document, Section};
-use super::super::tap;
+use super::super::mapping;
 use super::each;
 
 /// A channel with its source.
 pub(super) struct Sensor {
     pub channel: Channel,
-    pub tap: Tap,
+    pub mapping: ChannelMapping,
     /// True if the source has keys that a plain table does not need.
     pub mapped: bool,
 }
@@ -18,7 +18,7 @@ pub(super) struct Sensor {
 /// The channels of the file that `mapping` names, then those of the campaign itself.
 pub(super) fn sensors(folder: &Path, top: &Section<'_>) -> Option<Vec<Sensor>> {
     let shared = match top.optional_text("mapping") {
-        Some(file) => mapping(&folder.join(file), top),
+        Some(file) => shared_sensors(&folder.join(file), top),
         None => Some(Vec::new()),
     };
     let own = each(top.sections("channel"), "name", sensor, |sensor| &sensor.channel.name);
@@ -35,13 +35,13 @@ pub(super) fn sensors(folder: &Path, top: &Section<'_>) -> Option<Vec<Sensor>> {
             "remove it from one of the two files",
         );
     }
-    shared.iter_mut().for_each(|shared| shared.tap.shared = true);
+    shared.iter_mut().for_each(|shared| shared.mapping.shared = true);
     shared.extend(own);
     Some(shared)
 }
 
 /// The channels of a file that campaigns share.
-fn mapping(file: &Path, top: &Section<'_>) -> Option<Vec<Sensor>> {
+fn shared_sensors(file: &Path, top: &Section<'_>) -> Option<Vec<Sensor>> {
     let document = match Document::read(file) {
         Ok(document) => document,
         Err(error) => {
@@ -82,9 +82,9 @@ fn sensor(section: &Section<'_>) -> Option<Sensor> {
             "the column `time` holds the time; rename the channel",
         );
     }
-    let tap = tap::tap(section, name.as_deref().unwrap_or(""), quantity.map(Quantity::unit));
+    let mapping = mapping::mapping(section, name.as_deref().unwrap_or(""), quantity.map(Quantity::unit));
     section.finish();
-    let (tap, mapped) = tap?;
+    let (mapping, mapped) = mapping?;
     let channel = Channel {
         name: name?,
         location: location?,
@@ -92,5 +92,9 @@ fn sensor(section: &Section<'_>) -> Option<Sensor> {
         axis: axis?,
         quantity: quantity?,
     };
-    Some(Sensor { channel, tap, mapped })
+    Some(Sensor {
+        channel,
+        mapping,
+        mapped,
+    })
 }

@@ -1,4 +1,4 @@
-//! A channel as its tap reads it.
+//! A channel as its mapping reads it.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -8,7 +8,7 @@ use qcar_signals::resample::reach;
 use qcar_signals::samples::Samples;
 use qcar_signals::signal::{Recording, Signal, TimeBase};
 
-use super::super::contents::Tap;
+use super::super::contents::ChannelMapping;
 use super::even::{self, Even};
 use super::files::problem;
 use super::uneven::resampled;
@@ -18,7 +18,7 @@ use crate::error::{InputError, Place, Problem};
 
 /// A channel in SI. Values are computed on request, since a recording may be much longer than a run.
 pub(super) struct Channel<'a> {
-    pub tap: &'a Tap,
+    pub mapping: &'a ChannelMapping,
     signal: &'a Signal,
     base: TimeBase,
     /// Samples of the file; samples at uneven times are resampled.
@@ -31,16 +31,16 @@ pub(super) struct Channel<'a> {
 }
 
 impl<'a> Channel<'a> {
-    /// The channel that a tap selects. Without times in the file it has the declared rate.
-    pub fn tapped(
+    /// The channel that a mapping selects. Without times in the file it has the declared rate.
+    pub fn mapped(
         file: &Path,
         recording: &'a Recording,
-        tap: &'a Tap,
+        mapping: &'a ChannelMapping,
         declared: Option<f64>,
     ) -> Result<Channel<'a>, InputError> {
-        let signal = recording.find(&tap.source).map_err(|fault| {
+        let signal = recording.find(&mapping.source).map_err(|fault| {
             let problem = problem(file, &fault);
-            let expected = format!("{}, as `source` of `{}` says", problem.expected, tap.name);
+            let expected = format!("{}, as `source` of `{}` says", problem.expected, mapping.name);
             InputError::from(Problem { expected, ..problem })
         })?;
         let known = clock(&signal.time, declared);
@@ -50,13 +50,13 @@ impl<'a> Channel<'a> {
             let place = Place::Channel(signal.full_name(), None);
             return Err(Problem::new(file, place, "no times", expected, remedy).into());
         };
-        let scaling = Scaling::of(file, signal, &base, tap)?;
+        let scaling = Scaling::of(file, signal, &base, mapping)?;
         let (base, samples, uneven) = match resampled(&base, &signal.samples, rate) {
             Some(even) => (even.base, Cow::Owned(even.values.into()), Some(even.steps)),
             None => (base, Cow::Borrowed(&signal.samples), None),
         };
         Ok(Channel {
-            tap,
+            mapping,
             signal,
             base,
             samples,

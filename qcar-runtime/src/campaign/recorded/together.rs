@@ -47,7 +47,7 @@ impl<'a> Together<'a> {
     /// Names and samples; all have one length.
     pub fn columns(&self) -> Vec<(String, Vec<f64>)> {
         let both = self.channels.iter().zip(&self.even);
-        both.map(|(channel, even)| (channel.tap.name.clone(), on_grid(channel, even, self.grid)))
+        both.map(|(channel, even)| (channel.mapping.name.clone(), on_grid(channel, even, self.grid)))
             .collect()
     }
 
@@ -60,10 +60,10 @@ impl<'a> Together<'a> {
         let of = |(channel, even): (&Channel, &Even)| {
             let (values, grid) = (channel.values(even.samples.clone()), even.in_window());
             let values = &values[even.inside.clone()];
-            let mut found = of_samples(run, (&channel.tap.name, channel.tap.si), values, grid);
+            let mut found = of_samples(run, (&channel.mapping.name, channel.mapping.si), values, grid);
             found.extend(channel.uneven.map(|(least, most)| Finding {
                 run: run.name.clone(),
-                channel: channel.tap.name.clone(),
+                channel: channel.mapping.name.clone(),
                 span: (grid.start, grid.end()),
                 what: format!(
                     "samples are uneven, {:.3} to {:.3} ms apart, so values are interpolated linearly",

@@ -5,8 +5,8 @@ use std::path::Path;
 use qcar_signals::si::{Si, in_si};
 use qcar_signals::signal::{Signal, TimeBase};
 
-use super::super::contents::Tap;
-use super::super::tap::of_quantity;
+use super::super::contents::ChannelMapping;
+use super::super::mapping::of_quantity;
 use super::super::unit::examples;
 use super::even::time;
 use crate::error::{InputError, Place, Problem};
@@ -23,16 +23,16 @@ pub(super) struct Scaling {
 }
 
 impl Scaling {
-    /// The conversion of a tap; what the tap does not give comes from the file.
-    pub fn of(file: &Path, signal: &Signal, base: &TimeBase, tap: &Tap) -> Result<Self, InputError> {
+    /// The conversion of a mapping; what the mapping does not give comes from the file.
+    pub fn of(file: &Path, signal: &Signal, base: &TimeBase, mapping: &ChannelMapping) -> Result<Self, InputError> {
         let mut scaling = Scaling {
-            scale: tap.scale.unwrap_or(1.0),
-            offset: tap.offset,
-            sign: tap.sign,
-            si: unit(file, signal, tap)?,
+            scale: mapping.scale.unwrap_or(1.0),
+            offset: mapping.offset,
+            sign: mapping.sign,
+            si: unit(file, signal, mapping)?,
             zero: 0.0,
         };
-        if let Some(span) = tap.zero {
+        if let Some(span) = mapping.zero {
             scaling.zero = scaling.mean_of_start(file, signal, base, span)?;
         }
         Ok(scaling)
@@ -69,29 +69,29 @@ impl Scaling {
 }
 
 /// Unit of the scaled values: the declared one, otherwise that of the file. If both are known and differ, one of them
-/// is wrong, unless the tap has a scale.
-fn unit(file: &Path, signal: &Signal, tap: &Tap) -> Result<Si, InputError> {
-    let stated = in_si(&signal.unit).filter(|unit| of_quantity(Some(*unit), tap.si));
+/// is wrong, unless the mapping has a scale.
+fn unit(file: &Path, signal: &Signal, mapping: &ChannelMapping) -> Result<Si, InputError> {
+    let stated = in_si(&signal.unit).filter(|unit| of_quantity(Some(*unit), mapping.si));
     let refuse = |found: String, expected: String, remedy: String| {
         let place = Place::Channel(signal.name.clone(), None);
         Err(Problem::new(file, place, found, expected, remedy).into())
     };
-    let Some(declared) = &tap.unit else {
+    let Some(declared) = &mapping.unit else {
         let found = match signal.unit.as_str() {
             "" => "no unit".to_string(),
             unit => format!("values in \"{unit}\""),
         };
         let remedy = format!(
             "declare the `unit` of the channel `{}` in campaign.toml, and a `scale` if the file has another quantity",
-            tap.name
+            mapping.name
         );
-        return stated.map_or_else(|| refuse(found, examples(tap.si), remedy), Ok);
+        return stated.map_or_else(|| refuse(found, examples(mapping.si), remedy), Ok);
     };
     let own = in_si(declared).expect("campaign.toml was checked for its units");
     match stated {
-        Some(stated) if tap.scale.is_none() && !same_size(stated, own) => refuse(
+        Some(stated) if mapping.scale.is_none() && !same_size(stated, own) => refuse(
             format!("values in \"{}\"", signal.unit),
-            format!("values in \"{declared}\" as `unit` of `{}` says", tap.name),
+            format!("values in \"{declared}\" as `unit` of `{}` says", mapping.name),
             "correct `unit`, or give the channel a `source` and no `unit` to take that of the file; where the file is wrong, \
              add `scale = 1` to say so"
                 .into(),

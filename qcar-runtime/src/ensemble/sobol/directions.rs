@@ -1,8 +1,8 @@
-//! Direction numbers of Joe and Kuo, "Constructing Sobol sequences with better two-dimensional projections", SIAM J. Sci.
-//! Comput. 30 (2008), from their table new-joe-kuo-6.21201: dimensions 2 to 64.
+//! Direction numbers of Joe and Kuo, "Constructing Sobol sequences with better two-dimensional projections", SIAM J.
+//! Sci. Comput. 30 (2008), from their table new-joe-kuo-6.21201: dimensions 2 to 64.
 
-/// Of a dimension: the inner coefficients of its primitive polynomial as bits, and its first direction numbers, of which there
-/// are as many as the polynomial has degrees.
+/// For each dimension, the inner coefficients of its primitive polynomial as bits, and its first direction numbers, as
+/// many as the degree of the polynomial.
 pub(super) const TABLE: [(u32, &[u32]); 63] = [
     (0, &[1]),
     (1, &[1, 3]),

@@ -6,7 +6,7 @@ use std::rc::Rc;
 use nalgebra::{Complex, DMatrix, DVector, DVectorView, Dyn, U1};
 
 use super::basis::Basis;
-use super::factors::{Factors, Straight};
+use super::factors::{Factors, LinearStates};
 use super::period::Period;
 use super::product::{add, product};
 use crate::model::{Entry, Matrix, Model};
@@ -24,7 +24,7 @@ pub struct Balance<'a> {
     /// Samples of the present point.
     period: Period<'a>,
     /// The linear states at the last point whose Jacobian was factorised.
-    straight: Option<Rc<Straight>>,
+    linear_states: Option<Rc<LinearStates>>,
 }
 
 /// Largest number of Newton steps.
@@ -33,10 +33,10 @@ const ITERATIONS: usize = 30;
 const SETTLED: f64 = 1e-7;
 /// A constant part without a restoring term, such as the force of sticking friction, would make the matrix singular. A
 /// restoring rate of this fraction of ω is added. It changes the path of the search slightly, but not its result.
-const RETURN: f64 = 1e-6;
+const RESTORING: f64 = 1e-6;
 /// A matrix is used again if the next step with it is shorter than this fraction of the last full step: a new
 /// factorisation costs as much as tens of residuals.
-const STRAIGHT: f64 = 0.2;
+const REUSE: f64 = 0.2;
 /// Smallest fraction of a Newton step that is tried.
 const SHORTEST: f64 = 1e-3;
 
@@ -52,7 +52,7 @@ impl<'a> Balance<'a> {
             omega: 0.0,
             at: Vec::new(),
             period: Period::new(model, p, basis.samples()),
-            straight: None,
+            linear_states: None,
         }
     }
 
@@ -61,7 +61,7 @@ impl<'a> Balance<'a> {
         self.omega = omega;
         self.period.inputs = inputs;
         self.at.clear();
-        self.straight = None;
+        self.linear_states = None;
     }
 
     /// Searches from `start`. Returns the coefficients, and true if they converged.
@@ -101,8 +101,8 @@ impl<'a> Balance<'a> {
             if next < SETTLED {
                 return (x.as_slice().to_vec(), true);
             }
-            let is_straight = is_monotonic && share == 1.0 && next < STRAIGHT * length;
-            kept = is_straight.then_some((factors, step));
+            let can_reuse = is_monotonic && share == 1.0 && next < REUSE * length;
+            kept = can_reuse.then_some((factors, step));
         }
         (x.as_slice().to_vec(), false)
     }
@@ -243,34 +243,40 @@ impl<'a> Balance<'a> {
     fn factorise(&mut self) -> Option<Factors> {
         self.period.linearise();
         let mut constant = DMatrix::zeros(self.states.len(), self.states.len());
-        let mut bent = BTreeSet::new();
+        let mut nonlinear = BTreeSet::new();
         for (at, weights) in self.entries(Matrix::A) {
             let place = |state: u16| self.places[usize::from(state)];
             if let (Some(row), Some(column)) = (place(at.row), place(at.column)) {
                 match held(&weights) {
                     Some(weight) => constant[(row, column)] = weight,
-                    None => _ = bent.insert(row),
+                    None => _ = nonlinear.insert(row),
                 }
             }
         }
-        let others: Vec<usize> = (0..self.states.len()).filter(|place| !bent.contains(place)).collect();
-        let bent: Vec<usize> = bent.into_iter().collect();
-        let straight = self.straight(constant.select_rows(&others), &bent)?;
-        Some(Factors::new(straight, &self.jacobian(&bent)))
+        let others: Vec<usize> = (0..self.states.len())
+            .filter(|place| !nonlinear.contains(place))
+            .collect();
+        let nonlinear: Vec<usize> = nonlinear.into_iter().collect();
+        let linear_states = self.linear_states(constant.select_rows(&others), &nonlinear)?;
+        Some(Factors::new(linear_states, &self.jacobian(&nonlinear)))
     }
 
-    /// The linear states, whose rows of A are `constant`; those in `bent` are nonlinear. The factors of the last point
-    /// are reused if they are the same.
-    fn straight(&mut self, constant: DMatrix<f64>, bent: &[usize]) -> Option<Rc<Straight>> {
-        if !self.straight.as_ref().is_some_and(|last| last.is_of(&constant, bent)) {
+    /// The linear states, whose rows of A are `constant`; those in `nonlinear` are nonlinear. The factors of the last
+    /// point are reused if they are the same.
+    fn linear_states(&mut self, constant: DMatrix<f64>, nonlinear: &[usize]) -> Option<Rc<LinearStates>> {
+        if !self
+            .linear_states
+            .as_ref()
+            .is_some_and(|last| last.is_of(&constant, nonlinear))
+        {
             let turn = |harmonic| match harmonic {
-                0 => Complex::from(self.omega * RETURN),
+                0 => Complex::from(self.omega * RESTORING),
                 _ => Complex::new(0.0, self.omega * harmonic as f64),
             };
             let turns: Vec<Complex<f64>> = (0..=self.basis.terms() / 2).map(turn).collect();
-            self.straight = Straight::new(constant, &turns, bent.to_vec()).map(Rc::new);
+            self.linear_states = LinearStates::new(constant, &turns, nonlinear.to_vec()).map(Rc::new);
         }
-        self.straight.clone()
+        self.linear_states.clone()
     }
 
     /// The rows of some moving states in the Jacobian.
@@ -281,7 +287,7 @@ impl<'a> Balance<'a> {
         for (row, &state) in of.iter().enumerate() {
             let mut own = jacobian.view_mut((row * terms, state * terms), (terms, terms));
             for term in 0..terms {
-                let (partner, factor) = self.basis.derivative(term).unwrap_or((term, RETURN));
+                let (partner, factor) = self.basis.derivative(term).unwrap_or((term, RESTORING));
                 own[(term, partner)] += self.omega * factor;
             }
         }

@@ -11,7 +11,7 @@ use super::product::{add, product};
 
 /// A factorised Jacobian.
 pub struct Factors {
-    straight: Rc<Straight>,
+    linear_states: Rc<LinearStates>,
     /// Effect of the linear states on the nonlinear ones.
     pull: DMatrix<f64>,
     /// Factors of the reduced matrix of the nonlinear states, which includes their effect on themselves through the
@@ -20,13 +20,13 @@ pub struct Factors {
 }
 
 /// The linear states. They stay the same as long as the same states are nonlinear.
-pub struct Straight {
+pub struct LinearStates {
     /// Their rows of A, and the nonlinear states.
     of: (DMatrix<f64>, Vec<usize>),
     /// Their rows of the Jacobian, harmonic by harmonic.
     rows: Vec<usize>,
     /// The rows of the nonlinear states, in the same order.
-    bent: Vec<usize>,
+    nonlinear: Vec<usize>,
     /// Motion of the linear states under given right-hand sides.
     moves: Harmonics,
     /// Motion of the linear states with the nonlinear ones.
@@ -39,14 +39,14 @@ struct Harmonics(Vec<DMatrix<f64>>);
 
 impl Factors {
     /// Factorises a Jacobian; `rows` are those of the nonlinear states, state by state.
-    pub fn new(straight: Rc<Straight>, rows: &DMatrix<f64>) -> Self {
-        let bent: Vec<usize> = (0..straight.of.1.len()).collect();
-        let rows = rows.select_rows(&rows_of(&bent, straight.follow.0.len()));
-        let pull = rows.select_columns(&straight.rows);
-        let by_way = straight.follow.after(&pull);
+    pub fn new(linear_states: Rc<LinearStates>, rows: &DMatrix<f64>) -> Self {
+        let nonlinear: Vec<usize> = (0..linear_states.of.1.len()).collect();
+        let rows = rows.select_rows(&rows_of(&nonlinear, linear_states.follow.0.len()));
+        let pull = rows.select_columns(&linear_states.rows);
+        let by_way = linear_states.follow.after(&pull);
         Self {
-            lu: (rows.select_columns(&straight.bent) + by_way).lu(),
-            straight,
+            lu: (rows.select_columns(&linear_states.nonlinear) + by_way).lu(),
+            linear_states,
             pull,
         }
     }
@@ -59,14 +59,20 @@ impl Factors {
 
     /// The same for several right-hand sides, one in each column.
     pub fn solve_all(&self, pushes: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-        let mut straight = self.straight.moves.of(&pushes.select_rows(&self.straight.rows));
-        let mut bent = pushes.select_rows(&self.straight.bent);
-        bent -= product(&self.pull, &straight);
-        let is_solved = bent.is_empty() || self.lu.solve_mut(&mut bent);
+        let mut linear_states = self
+            .linear_states
+            .moves
+            .of(&pushes.select_rows(&self.linear_states.rows));
+        let mut nonlinear = pushes.select_rows(&self.linear_states.nonlinear);
+        nonlinear -= product(&self.pull, &linear_states);
+        let is_solved = nonlinear.is_empty() || self.lu.solve_mut(&mut nonlinear);
         is_solved.then_some(())?;
-        straight += self.straight.follow.of(&bent);
+        linear_states += self.linear_states.follow.of(&nonlinear);
         let mut x = DMatrix::zeros(pushes.nrows(), pushes.ncols());
-        for (rows, found) in [(&self.straight.rows, straight), (&self.straight.bent, bent)] {
+        for (rows, found) in [
+            (&self.linear_states.rows, linear_states),
+            (&self.linear_states.nonlinear, nonlinear),
+        ] {
             for (mut x, found) in x.column_iter_mut().zip(found.column_iter()) {
                 for (&row, &value) in rows.iter().zip(found.as_slice()) {
                     x[row] = value;
@@ -77,12 +83,13 @@ impl Factors {
     }
 }
 
-impl Straight {
+impl LinearStates {
     /// The linear states, whose rows of the Jacobian are `jnω - A`. `a` has their rows of A, `turns` are `jnω` for each
-    /// harmonic from 0, and `bent` are the other, nonlinear states. `None` if the matrix of a harmonic is singular.
-    pub fn new(a: DMatrix<f64>, turns: &[Complex<f64>], bent: Vec<usize>) -> Option<Self> {
-        let own: Vec<usize> = (0..a.ncols()).filter(|state| !bent.contains(state)).collect();
-        let (among, pushes) = (a.select_columns(&own), a.select_columns(&bent));
+    /// harmonic from 0, and `nonlinear` are the other, nonlinear states. `None` if the matrix of a harmonic is
+    /// singular.
+    pub fn new(a: DMatrix<f64>, turns: &[Complex<f64>], nonlinear: Vec<usize>) -> Option<Self> {
+        let own: Vec<usize> = (0..a.ncols()).filter(|state| !nonlinear.contains(state)).collect();
+        let (among, pushes) = (a.select_columns(&own), a.select_columns(&nonlinear));
         let inverse = |&turn: &Complex<f64>| {
             let stiffness = DMatrix::from_diagonal_element(own.len(), own.len(), turn) - among.map(Complex::from);
             stiffness.lu().try_inverse()
@@ -90,18 +97,18 @@ impl Straight {
         let compliance: Vec<_> = turns.iter().map(inverse).collect::<Option<_>>()?;
         let pushes = pushes.map(Complex::from);
         let following: Vec<_> = compliance.iter().map(|compliance| compliance * &pushes).collect();
-        Some(Straight {
+        Some(LinearStates {
             rows: rows_of(&own, turns.len()),
-            bent: rows_of(&bent, turns.len()),
+            nonlinear: rows_of(&nonlinear, turns.len()),
             moves: Harmonics::new(&compliance),
             follow: Harmonics::new(&following),
-            of: (a, bent),
+            of: (a, nonlinear),
         })
     }
 
     /// True if these rows and nonlinear states are its own.
-    pub fn is_of(&self, a: &DMatrix<f64>, bent: &[usize]) -> bool {
-        (&self.of.0, &self.of.1[..]) == (a, bent)
+    pub fn is_of(&self, a: &DMatrix<f64>, nonlinear: &[usize]) -> bool {
+        (&self.of.0, &self.of.1[..]) == (a, nonlinear)
     }
 }
 
@@ -176,9 +183,11 @@ mod tests {
         // Three states of five terms each, some of them linear.
         for own in [vec![0, 2], vec![1], vec![0], vec![0, 1]] {
             let (omega, constant) = (3.0, 1e-3);
-            let bent_states: Vec<usize> = (0..3).filter(|state| !own.contains(state)).collect();
+            let nonlinear_states: Vec<usize> = (0..3).filter(|state| !own.contains(state)).collect();
             let a = DMatrix::from_row_slice(3, 3, &[-0.5, 2.0, 1.0, 0.9, -1.1, 0.4, -4.0, 0.7, 0.3]);
-            let bent = DMatrix::from_fn(5 * bent_states.len(), 15, |i, j| ((7 * i + 3 * j) % 11) as f64 - 4.5);
+            let nonlinear = DMatrix::from_fn(5 * nonlinear_states.len(), 15, |i, j| {
+                ((7 * i + 3 * j) % 11) as f64 - 4.5
+            });
             let mut whole = DMatrix::zeros(15, 15);
             for (&row, column) in own.iter().flat_map(|row| (0..3).map(move |column| (row, column))) {
                 let block = DMatrix::from_diagonal_element(5, 5, -a[(row, column)]);
@@ -191,8 +200,8 @@ mod tests {
                     whole[(cosine + 1, cosine)] -= omega * harmonic;
                 }
             }
-            for (place, state) in bent_states.iter().enumerate() {
-                whole.rows_mut(5 * state, 5).copy_from(&bent.rows(5 * place, 5));
+            for (place, state) in nonlinear_states.iter().enumerate() {
+                whole.rows_mut(5 * state, 5).copy_from(&nonlinear.rows(5 * place, 5));
             }
             let push = DVector::from_fn(15, |i, _| (i * i % 5) as f64 - 1.5);
             let expected = whole.lu().solve(&push).unwrap();
@@ -201,8 +210,8 @@ mod tests {
                 Complex::new(0.0, omega),
                 Complex::new(0.0, 2.0 * omega),
             ];
-            let straight = Straight::new(a.select_rows(&own), &turns, bent_states).unwrap();
-            let solved = Factors::new(Rc::new(straight), &bent).solve(&push).unwrap();
+            let linear_states = LinearStates::new(a.select_rows(&own), &turns, nonlinear_states).unwrap();
+            let solved = Factors::new(Rc::new(linear_states), &nonlinear).solve(&push).unwrap();
             assert!(
                 (&solved - &expected).amax() < 1e-9 * expected.amax(),
                 "{solved} {expected}"

@@ -81,12 +81,12 @@ impl<const F: usize> ExponentialAbreast<F> {
             put(&mut part.from, &own.from);
             part.propagator.iter_mut().for_each(|entry| entry[lane] = 0.0);
             let (rows, columns) = (part.states.len(), part.from.len());
-            let entries = own.propagators[one.rung].entries();
+            let entries = own.propagators[one.doubling].entries();
             for (row, column, value) in entries.filter(|(row, _, _)| *row < rows) {
                 part.propagator[row * columns + column][lane] = value;
             }
         }
-        let corrections = &one.corrections[one.rung];
+        let corrections = &one.corrections[one.doubling];
         for force in 0..F {
             put(&mut self.whole[force], &corrections.whole[force]);
             put(&mut self.last_order[force], &corrections.last_order[force]);

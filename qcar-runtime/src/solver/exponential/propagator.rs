@@ -1,30 +1,30 @@
 //! The matrix of a step: from the states and forces at its beginning to the states at its end.
 //!
-//! In a short step a part of a long chain moves its neighbours alone. What is negligible is left out, so that a step takes work with
-//! the number of states, not with its square.
+//! In a short step, a part of a long chain moves only its neighbours. Negligible entries are left out, so that the work of a
+//! step grows linearly with the number of states.
 
 use std::array;
 
 use crate::solver::matrix::{Lanes, Matrix};
 use crate::vectors::{Loops, widest};
 
-/// Entries below this are left out, for states scaled such that an entry and its transpose are equal. Over 10⁹ steps their sum stays
-/// below the rounding of the states, 10⁻¹⁶.
+/// Entries below this value are left out, if the states are scaled so that an entry and its transpose are equal. Over 10⁹
+/// steps their sum stays below the rounding of the states, 10⁻¹⁶.
 const NEGLIGIBLE: f64 = 1e-25;
 
-/// Columns of four rows, of which those of zeros are left out.
+/// A matrix in tiles of four rows and four columns; tiles of zeros are left out.
 #[derive(Clone)]
 pub(super) struct Propagator {
-    /// Four neighbouring columns of four rows, row by row.
+    /// The tiles, from left to right and then down; each is stored column by column.
     tiles: Vec<[Lanes; 4]>,
-    /// The place of each among the columns, in fours.
+    /// Position of each tile in its group of rows.
     places: Vec<usize>,
-    /// The end of each four rows among the tiles.
+    /// For each group of four rows, the position after its last tile.
     ends: Vec<usize>,
 }
 
 impl Propagator {
-    /// The first rows of a matrix, in which the first columns are of the same states.
+    /// The first `states` rows of a matrix, whose first columns belong to the same states.
     pub fn new(matrix: &Matrix, states: usize) -> Self {
         let entry = |row: usize, column: usize| {
             let entry = matrix.entry(row, column);

@@ -22,7 +22,7 @@ function comparison(data) {
     vibrations(data),
     gradients(data),
     ratios(data),
-    passages(data),
+    cleatRuns(data),
   ];
   assemble(() => [head(), sections()]);
 }

@@ -63,7 +63,7 @@ function estimated(elasticities, values, parameters) {
 function responses({ parameters, moves }) {
   const given = (place, value) =>
     Object.fromEntries(
-      moves.filter((own) => own.knob === place).map((own) => [own.parameter, own.factor * value + own.constant]),
+      moves.filter((own) => own.variable === place).map((own) => [own.parameter, own.factor * value + own.constant]),
     );
   const today = Object.assign({}, ...parameters.map((own, place) => given(place, own.today)));
   const [from, to] = TRIED_BAND;

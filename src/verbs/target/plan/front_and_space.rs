@@ -1,6 +1,6 @@
 //! Further questions: the front, and the solution space.
 
-use qcar_runtime::target::{Knob, Sense};
+use qcar_runtime::target::{DesignVariable, Sense};
 use toml::Spanned;
 
 use super::Planner;
@@ -41,7 +41,7 @@ impl Planner<'_, '_> {
     }
 
     /// The probability and the planes of the solution space.
-    pub(super) fn space(&mut self, knobs: &[Knob]) -> (f64, Vec<[usize; 2]>) {
+    pub(super) fn space(&mut self, variables: &[DesignVariable]) -> (f64, Vec<[usize; 2]>) {
         const USUAL: f64 = 0.95;
         let read = self.read;
         let Some(space) = &read.file.space else {
@@ -67,7 +67,7 @@ impl Planner<'_, '_> {
             let places = pair
                 .get_ref()
                 .each_ref()
-                .map(|name| self.parameter_knob(&Spanned::new(pair.span(), name.clone()), "space.cuts", knobs));
+                .map(|name| self.variable_of(&Spanned::new(pair.span(), name.clone()), "space.cuts", variables));
             if let [Some(a), Some(b)] = places {
                 cuts.push([a, b]);
             }

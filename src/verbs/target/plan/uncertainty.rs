@@ -5,13 +5,13 @@ use std::collections::BTreeMap;
 use toml::Spanned;
 
 use super::Planner;
-use crate::verbs::sensitivity::uncertainty::Doubts;
+use crate::verbs::sensitivity::uncertainty::UncertaintySources;
 use crate::verbs::sensitivity::{Percent, per_kelvin};
 use crate::verbs::target::file::Uncertainty;
 
 impl Planner<'_, '_> {
     /// The uncertainty, and the required probability of each target at the design, if the file states one.
-    pub(super) fn uncertainty(&mut self) -> (Doubts, Option<f64>) {
+    pub(super) fn uncertainty(&mut self) -> (UncertaintySources, Option<f64>) {
         let usual = Uncertainty::default();
         let own = self.read.file.uncertainty.as_ref().unwrap_or(&usual);
         if let Some(at) = own.fit.as_ref().filter(|at| *at.get_ref())
@@ -25,13 +25,13 @@ impl Planner<'_, '_> {
             self.wrong(at, "uncertainty.fit", found, expected, remedy);
         }
         let percent = |text: &str| text.parse::<Percent>().map(|own| own.0);
-        let doubts = Doubts {
+        let sources = UncertaintySources {
             fit: own.fit.as_ref().is_none_or(|at| *at.get_ref()),
             tolerances: self.parts(&own.tolerances, "uncertainty.tolerances", percent),
             per_kelvin: self.parts(&own.per_kelvin, "uncertainty.per_kelvin", per_kelvin),
             temperatures: self.temperatures(own),
         };
-        (doubts, self.sure(own))
+        (sources, self.sure(own))
     }
 
     fn parts(

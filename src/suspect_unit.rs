@@ -14,8 +14,8 @@ pub(crate) struct Statistics {
     pub max: f64,
 }
 
-/// Doubt about a unit from these statistics; `None` if it may be right.
-pub(crate) fn doubt(unit: &str, does: Option<Statistics>) -> Option<String> {
+/// Why a unit is probably wrong, from the statistics of its samples; `None` if it may be right.
+pub(crate) fn suspicion(unit: &str, does: Option<Statistics>) -> Option<String> {
     if unit.is_empty() {
         return None;
     }

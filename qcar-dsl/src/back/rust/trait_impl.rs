@@ -12,12 +12,12 @@ pub fn implementation(compiled: &Compiled) -> String {
     let about = &compiled.about;
     let name = camel(&about.name);
     format!(
-        "/// This model behind the seam of the workbench.
+        "/// This model as the workbench sees it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct {name};
 
-impl seam::Model for {name} {{
-    fn about(&self) -> &seam::About {{
+impl interface::Model for {name} {{
+    fn about(&self) -> &interface::About {{
         &ABOUT
     }}
 
@@ -70,14 +70,14 @@ fn response(about: &About) -> String {
     };
     format!(
         "
-    fn response(&self, excitation: usize, constants: &[f64], omega: &[f64], into: seam::ResponseMut<'_>) {{
+    fn response(&self, excitation: usize, constants: &[f64], omega: &[f64], into: interface::ResponseMut<'_>) {{
         let constants = fixed(constants);
         match (excitation, into.jacobian.is_some()) {{
 {each}            _ => no_response(&ABOUT, excitation),
         }}
     }}
 
-    fn line_sets(&self, excitation: usize, constants: &[seam::Lanes], omega: f64, with_jacobian: bool, into: &mut [seam::Lanes]) {{
+    fn line_sets(&self, excitation: usize, constants: &[interface::Lanes], omega: f64, with_jacobian: bool, into: &mut [interface::Lanes]) {{
         let constants = fixed(constants);
         match (excitation, with_jacobian) {{
 {sets}            _ => no_response(&ABOUT, excitation),
@@ -90,20 +90,20 @@ fn response(about: &About) -> String {
 }
 
 const SETS: &str = "
-    fn prepare_sets(&self, p: &[seam::Lanes], constants: &mut [seam::Lanes]) {
+    fn prepare_sets(&self, p: &[interface::Lanes], constants: &mut [interface::Lanes]) {
         together(&PrepareSets { p: fixed(p) }, constants);
     }
 
-    fn derivative_sets(&self, constants: &[seam::Lanes], x: &[seam::Lanes], u: &[seam::Lanes], dx: &mut [seam::Lanes]) {
+    fn derivative_sets(&self, constants: &[interface::Lanes], x: &[interface::Lanes], u: &[interface::Lanes], dx: &mut [interface::Lanes]) {
         let sets = DerivativeSets { constants: fixed(constants), x: fixed(x), u: fixed(u) };
         together(&sets, dx);
     }
 
-    fn matrices_sets(&self, p: &[seam::Lanes], x: &[seam::Lanes], u: &[seam::Lanes], nonzeros: &mut [seam::Lanes]) {
+    fn matrices_sets(&self, p: &[interface::Lanes], x: &[interface::Lanes], u: &[interface::Lanes], nonzeros: &mut [interface::Lanes]) {
         together(&MatricesSets { p: fixed(p), x: fixed(x), u: fixed(u) }, nonzeros);
     }
 
-    fn sensitivities_sets(&self, p: &[seam::Lanes], x: &[seam::Lanes], u: &[seam::Lanes], nonzeros: &mut [seam::Lanes]) {
+    fn sensitivities_sets(&self, p: &[interface::Lanes], x: &[interface::Lanes], u: &[interface::Lanes], nonzeros: &mut [interface::Lanes]) {
         together(&SensitivitiesSets { p: fixed(p), x: fixed(x), u: fixed(u) }, nonzeros);
     }
 ";
@@ -117,16 +117,16 @@ const ROLLING: &str = "
     }
 
     #[inline]
-    fn rolling_derivative(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &seam::Contact, dx: &mut [f64]) {
+    fn rolling_derivative(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &interface::Contact, dx: &mut [f64]) {
         straight::rolling_derivative(fixed(constants), fixed(x), fixed(u), contact, fixed_mut(dx));
     }
 
-    fn rolling_outputs(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &seam::Contact, y: &mut [f64]) {
+    fn rolling_outputs(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &interface::Contact, y: &mut [f64]) {
         straight::rolling_outputs(fixed(constants), fixed(x), fixed(u), contact, fixed_mut(y));
     }
 
-    fn contact_force_sets(&self, constants: &[seam::Lanes], x: &[seam::Lanes], s: &seam::Lanes, v: &seam::Lanes) -> seam::Lanes {
-        let mut force = [seam::Lanes::default()];
+    fn contact_force_sets(&self, constants: &[interface::Lanes], x: &[interface::Lanes], s: &interface::Lanes, v: &interface::Lanes) -> interface::Lanes {
+        let mut force = [interface::Lanes::default()];
         let sets = ContactForceSets { constants: fixed(constants), x: fixed(x), s, v };
         together(&sets, &mut force);
         force[0]
@@ -134,11 +134,11 @@ const ROLLING: &str = "
 
     fn rolling_derivative_sets(
         &self,
-        constants: &[seam::Lanes],
-        x: &[seam::Lanes],
-        u: &[seam::Lanes],
-        contacts: &seam::Contacts,
-        dx: &mut [seam::Lanes],
+        constants: &[interface::Lanes],
+        x: &[interface::Lanes],
+        u: &[interface::Lanes],
+        contacts: &interface::Contacts,
+        dx: &mut [interface::Lanes],
     ) {
         let sets = RollingDerivativeSets { constants: fixed(constants), x: fixed(x), u: fixed(u), contact: contacts };
         together(&sets, dx);

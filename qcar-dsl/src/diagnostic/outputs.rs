@@ -4,23 +4,23 @@ use super::{Code, Diagnostic, all_of};
 use crate::source::Span;
 
 /// A model without outputs.
-pub fn nothing_to_see(span: Span) -> Diagnostic {
-    Diagnostic::error(Code::NothingToSee, "the model has no output: no mass, and no `output`")
+pub fn no_outputs(span: Span) -> Diagnostic {
+    Diagnostic::error(Code::NoOutputs, "the model has no output: no mass, and no `output`")
         .label(span, "this model")
         .hint("write an output, such as `output damper.force;`")
 }
 
 /// A model that no input moves.
-pub fn nothing_moves(span: Span) -> Diagnostic {
-    Diagnostic::warning(Code::NothingMoves, "no road, motion or force excites this model")
+pub fn no_excitation(span: Span) -> Diagnostic {
+    Diagnostic::warning(Code::NoExcitation, "no road, motion or force excites this model")
         .label(span, "only free vibrations")
         .hint("write `road pad;`, `motion rod;` or `force f on body;`")
 }
 
 /// A parameter that no response depends on.
-pub fn parameter_not_seen(span: Span, name: &str) -> Diagnostic {
+pub fn parameter_undetermined(span: Span, name: &str) -> Diagnostic {
     Diagnostic::warning(
-        Code::ParameterNotSeen,
+        Code::ParameterUndetermined,
         format!("no output depends on parameter `{name}`"),
     )
     .label(span, "changes no response")
@@ -30,7 +30,7 @@ pub fn parameter_not_seen(span: Span, name: &str) -> Diagnostic {
 }
 
 /// Parameters of which the outputs determine fewer combinations than there are parameters.
-pub fn only_together(parameters: &[(Span, &str)], seen: usize, combination: Option<&str>) -> Diagnostic {
+pub fn only_in_combination(parameters: &[(Span, &str)], seen: usize, combination: Option<&str>) -> Diagnostic {
     let names: Vec<&str> = parameters.iter().map(|(_, name)| *name).collect();
     let what = match (combination, seen) {
         (Some(combination), _) => format!("`{combination}`"),
@@ -42,7 +42,7 @@ pub fn only_together(parameters: &[(Span, &str)], seen: usize, combination: Opti
         "no output can distinguish {}: it depends only on {what}",
         all_of(&names)
     );
-    let diagnostic = Diagnostic::warning(Code::OnlyTogether, message).hint(format!(
+    let diagnostic = Diagnostic::warning(Code::OnlyInCombination, message).hint(format!(
         "write `known param …` for {given} if given elsewhere, or replace them by one parameter"
     ));
     parameters.iter().fold(diagnostic, |diagnostic, (span, _)| {

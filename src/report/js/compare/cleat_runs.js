@@ -1,27 +1,27 @@
 // Both sides over the same cleats: peaks, after-shakes and traces.
 
-function passages({ cleat, traces }) {
+function cleatRuns({ cleat, traces }) {
   if (!traces.length) return null;
   const places = [...new Set(cleat.runs.map((own) => `${own.mass}_${own.axis}`))];
   const first = places.includes('body_z') ? 'body_z' : places[0];
-  const shown = picker('passages', {
+  const shown = picker('cleat runs', {
     label: 'Run',
-    options: traces.map((own) => [own.run, passageName(own)]),
+    options: traces.map((own) => [own.run, cleatRunName(own)]),
     first: traces[Math.floor(traces.length / 2)].run,
     show: (name, place, text) =>
-      passagePlots(
+      cleatRunPlots(
         traces.find((own) => own.run === name),
         place,
         text,
       ),
   });
-  const tables = picker('passage tables', {
+  const tables = picker('cleat run tables', {
     control: choice,
     label: 'Mass',
     options: places.map((place) => [place, words(place)]),
     first,
     show: (name, place) => {
-      place.replaceChildren(passageTable(cleat.runs, name));
+      place.replaceChildren(cleatRunTable(cleat.runs, name));
       return [];
     },
   });
@@ -58,11 +58,11 @@ function passages({ cleat, traces }) {
   };
 }
 
-function passageName({ speed, height, role }) {
+function cleatRunName({ speed, height, role }) {
   return `${plain(3.6 * speed, 3)} km/h, ${given(height, 'm')}${role ? ` (${roleName(role)})` : ''}`;
 }
 
-function passagePlots(run, place, title) {
+function cleatRunPlots(run, place, title) {
   const traces = [...run.traces].sort((a, b) => a.mass.localeCompare(b.mass) || b.axis.localeCompare(a.axis));
   const columns = traces.map((trace) => traceColumn(trace, 'passage', title));
   place.replaceChildren(h('div', { class: 'columns two' }, columns));
@@ -72,7 +72,7 @@ function passagePlots(run, place, title) {
       x: TIME,
       y: ACCELERATION,
       at: run.time,
-      sync: 'passages',
+      sync: 'cleat runs',
       curves: [
         ...trace.measured.map((values, own) => ({ role: roles[own], values })),
         { role: 'before', label: 'A', values: trace.a },
@@ -82,7 +82,7 @@ function passagePlots(run, place, title) {
   });
 }
 
-function passageTable(all, place) {
+function cleatRunTable(all, place) {
   const own = all.filter((run) => `${run.mass}_${run.axis}` === place);
   const count = Math.max(...own.map((run) => run.peak.measured.length));
   const headings = [[], ['measured'], ['measured A', 'measured B']][count];
@@ -97,7 +97,7 @@ function passageTable(all, place) {
   return table(
     headed(`Peaks and after-shakes of ${words(place)}`, ACCELERATION.unit),
     [['run', 'text'], ...columns('peak'), ...columns('after-shake')],
-    own.map((run) => [passageName(run), ...cells(run.peak), ...cells(run.after_shake)]),
+    own.map((run) => [cleatRunName(run), ...cells(run.peak), ...cells(run.after_shake)]),
   );
 }
 

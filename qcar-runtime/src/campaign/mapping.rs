@@ -1,6 +1,6 @@
 //! The channel of a measured file that is a sensor, and its conversion to SI.
 
-use super::contents::{Quantity, Tap, Trigger, Window};
+use super::contents::{ChannelMapping, Quantity, Trigger, Window};
 use super::fields::Section;
 use super::unit::{self, examples};
 use qcar_signals::si::{Si, in_si};
@@ -8,13 +8,13 @@ use qcar_signals::si::{Si, in_si};
 /// Duration at the beginning of a recording whose mean `zero = "start"` subtracts, s.
 const ZERO_SPAN: f64 = 1.0;
 
-/// Keys of the source of values; a channel with one of them has a tap.
+/// Keys of the source of values; a channel with one of them has a mapping.
 const MAPPED: [&str; 5] = ["source", "scale", "offset", "sign", "zero"];
 
-/// The tap of a channel, and true if the section has keys that a plain table does not need.
+/// The mapping of a channel, and true if the section has keys that a plain table does not need.
 ///
 /// `si` is the unit of the result. A channel without such keys has it as its `unit`, and its own name as source.
-pub(super) fn tap(section: &Section<'_>, name: &str, si: Option<&'static str>) -> Option<(Tap, bool)> {
+pub(super) fn mapping(section: &Section<'_>, name: &str, si: Option<&'static str>) -> Option<(ChannelMapping, bool)> {
     let mapped = MAPPED.iter().any(|key| section.has(key));
     let source = section.optional_text("source");
     let (scale, offset) = (section.optional_number("scale"), section.optional_number("offset"));
@@ -26,7 +26,7 @@ pub(super) fn tap(section: &Section<'_>, name: &str, si: Option<&'static str>) -
     if let (Some(si), Some(unit)) = (si, &unit) {
         check_unit(section, name, unit, si, mapped);
     }
-    let tap = Tap {
+    let mapping = ChannelMapping {
         name: name.into(),
         source: source.unwrap_or_else(|| name.into()),
         unit,
@@ -37,7 +37,7 @@ pub(super) fn tap(section: &Section<'_>, name: &str, si: Option<&'static str>) -
         zero: zero?,
         shared: false,
     };
-    Some((tap, mapped))
+    Some((mapping, mapped))
 }
 
 fn check_unit(section: &Section<'_>, name: &str, unit: &str, si: &'static str, mapped: bool) {
@@ -90,37 +90,37 @@ fn zero(section: &Section<'_>) -> Option<Option<f64>> {
     Some(Some(span.unwrap_or(Some(ZERO_SPAN))?))
 }
 
-/// The tap of each column of a curve that the run maps, and true if there is one.
-pub(super) fn columns(section: &Section<'_>, columns: &[&'static str]) -> Option<(Vec<Tap>, bool)> {
-    let (mut taps, mut any) = (Vec::new(), false);
+/// The mapping of each column of a curve that the run maps, and true if there is one.
+pub(super) fn columns(section: &Section<'_>, columns: &[&'static str]) -> Option<(Vec<ChannelMapping>, bool)> {
+    let (mut mappings, mut any) = (Vec::new(), false);
     for &column in columns.iter().filter(|column| **column != "time") {
         let si = match column {
             "displacement" => Quantity::Displacement.unit(),
             "velocity" => Quantity::Velocity.unit(),
             _ => Quantity::Force.unit(),
         };
-        taps.push(match section.section(column) {
+        mappings.push(match section.section(column) {
             Some(own) => {
                 any = true;
-                let tap = mapped_column(&own, column, si);
+                let mapping = mapped_column(&own, column, si);
                 own.finish();
-                tap
+                mapping
             }
-            None => Some(Tap::plain(column, si)),
+            None => Some(ChannelMapping::plain(column, si)),
         });
     }
-    Some((taps.into_iter().collect::<Option<_>>()?, any))
+    Some((mappings.into_iter().collect::<Option<_>>()?, any))
 }
 
-fn mapped_column(section: &Section<'_>, column: &str, si: &'static str) -> Option<Tap> {
+fn mapped_column(section: &Section<'_>, column: &str, si: &'static str) -> Option<ChannelMapping> {
     section.text("source")?;
-    tap(section, column, Some(si)).map(|(tap, _)| tap)
+    mapping(section, column, Some(si)).map(|(mapping, _)| mapping)
 }
 
-impl Tap {
+impl ChannelMapping {
     /// Values in SI under the column's own name.
-    pub(super) fn plain(name: &str, si: &'static str) -> Tap {
-        Tap {
+    pub(super) fn plain(name: &str, si: &'static str) -> ChannelMapping {
+        ChannelMapping {
             name: name.into(),
             source: name.into(),
             unit: Some(si.into()),

@@ -1,21 +1,21 @@
 //! Parameters that may change, with their ranges, steps and costs.
 
 use qcar_runtime::shown::shown;
-use qcar_runtime::target::{Knob, Move};
+use qcar_runtime::target::{DesignVariable, Move};
 use toml::Spanned;
 
 use super::Planner;
 use crate::verbs::target::file::{self, Amount};
 
 impl Planner<'_, '_> {
-    /// The knobs, with their units and the parameters that they move.
-    pub(super) fn knobs(&mut self) -> (Vec<Knob>, Vec<String>, Vec<Move>) {
-        let (mut knobs, mut units, mut moves): (Vec<Knob>, Vec<String>, Vec<Move>) = Default::default();
+    /// The design variables, with their units and the parameters that they move.
+    pub(super) fn variables(&mut self) -> (Vec<DesignVariable>, Vec<String>, Vec<Move>) {
+        let (mut variables, mut units, mut moves): (Vec<DesignVariable>, Vec<String>, Vec<Move>) = Default::default();
         for own in &self.read.file.parameters {
             let Some(place) = self.parameter(&own.name, "parameter.name") else {
                 continue;
             };
-            if knobs.iter().any(|knob| knob.name == *own.name.get_ref()) {
+            if variables.iter().any(|variable| variable.name == *own.name.get_ref()) {
                 self.wrong(
                     &own.name,
                     "parameter.name",
@@ -25,16 +25,16 @@ impl Planner<'_, '_> {
                 );
                 continue;
             }
-            let Some((knob, unit)) = self.knob(own, place) else {
+            let Some((variable, unit)) = self.variable(own, place) else {
                 continue;
             };
             moves.push(Move {
-                knob: knobs.len(),
+                variable: variables.len(),
                 parameter: place,
                 factor: 1.0,
                 constant: 0.0,
             });
-            knobs.push(knob);
+            variables.push(variable);
             units.push(unit);
         }
         if self.read.file.parameters.is_empty() {
@@ -47,10 +47,10 @@ impl Planner<'_, '_> {
                 remedy,
             );
         }
-        (knobs, units, moves)
+        (variables, units, moves)
     }
 
-    fn knob(&mut self, own: &file::Parameter, place: usize) -> Option<(Knob, String)> {
+    fn variable(&mut self, own: &file::Parameter, place: usize) -> Option<(DesignVariable, String)> {
         let (unit, today) = (
             self.subject.model.about().parameters[place].unit.to_string(),
             self.values().as_slice()[place],
@@ -73,7 +73,7 @@ impl Planner<'_, '_> {
         }
         let name = own.name.get_ref().clone();
         Some((
-            Knob {
+            DesignVariable {
                 name,
                 lower,
                 upper,

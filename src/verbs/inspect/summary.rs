@@ -3,10 +3,10 @@
 use qcar_signals::signal::Signal;
 use qcar_signals::summary::Summary;
 
-use crate::doubt::{Statistics, doubt};
+use crate::suspect_unit::{Statistics, suspicion};
 
-/// The range and the course of a channel, in its unit.
-pub(in crate::verbs) struct Course {
+/// Range, mean and RMS of a channel, in its unit.
+pub(in crate::verbs) struct ChannelSummary {
     /// Number of samples, including those without a value.
     pub samples: usize,
     /// Number of samples without a value.
@@ -21,17 +21,17 @@ pub(in crate::verbs) struct Course {
     pub rms: Option<f64>,
     /// Sparkline of a few characters, from the lowest to the highest value.
     pub sparkline: String,
-    /// Doubt about its unit, as a sentence.
+    /// Why its unit is probably wrong, as a sentence.
     pub doubt: Option<String>,
 }
 
-impl Course {
+impl ChannelSummary {
     /// Summary of a channel with samples.
     pub fn of(signal: &Signal) -> Self {
         let summary = signal.samples.summary();
         let mean = summary.mean();
         let Summary { min, max, .. } = summary;
-        Course {
+        ChannelSummary {
             samples: summary.samples,
             missing: summary.samples - summary.valid,
             rate: signal.time.rate(),
@@ -41,7 +41,7 @@ impl Course {
             mean,
             rms: summary.rms(),
             sparkline: sparkline(&summary),
-            doubt: doubt(&signal.unit, mean.map(|mean| Statistics { mean, min, max })),
+            doubt: suspicion(&signal.unit, mean.map(|mean| Statistics { mean, min, max })),
         }
     }
 
@@ -51,7 +51,7 @@ impl Course {
     }
 }
 
-/// The course of a channel in a few characters: the means of its parts, from the lowest to the highest.
+/// A channel in a few characters: the means of its parts, from the lowest to the highest.
 fn sparkline(summary: &Summary) -> String {
     let means: Vec<f64> = summary.part_means().collect();
     let low = means.iter().copied().fold(f64::INFINITY, f64::min);

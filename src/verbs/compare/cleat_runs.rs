@@ -3,16 +3,15 @@
 use qcar_runtime::campaign::{Campaign, Quantity, Role};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::model::{self, SignalKind};
-use qcar_runtime::progress::OnProgress;
 use qcar_runtime::roles::Roles;
-use qcar_runtime::simulate::{Car, Cleat, Drive, Ride, Settings, Standard, Variant, rides, tyre_of};
+use qcar_runtime::simulate::{Cleat, Drive, Ride, Standard, Variant, tyre_of};
 
 use super::records::{Compared, Key, Record, compared};
 use super::sides::Side;
-use crate::progress::while_counting;
+use crate::verbs::simulate::simulate_rides;
 
 /// A cleat run of both sides.
-pub(super) struct Passage {
+pub(super) struct CleatRun {
     /// File of the run, or description of the ride.
     pub name: String,
     /// Speed, m/s.
@@ -66,7 +65,7 @@ impl Run {
 ///
 /// # Errors
 /// Fails as [`driven`] does.
-pub(super) fn standard(sides: &[Side; 2], roles: &[Roles; 2]) -> Result<Vec<Passage>, InputError> {
+pub(super) fn standard(sides: &[Side; 2], roles: &[Roles; 2]) -> Result<Vec<CleatRun>, InputError> {
     let runs = Standard::all().expect("the standard cleats are roads");
     driven(sides, roles, runs.into_iter().map(Run::Standard).collect())
 }
@@ -79,7 +78,7 @@ pub(super) fn of_campaign(
     sides: &[Side; 2],
     roles: &[Roles; 2],
     campaign: &Campaign,
-) -> Result<Vec<Passage>, InputError> {
+) -> Result<Vec<CleatRun>, InputError> {
     let runs = cleats(campaign)?
         .into_iter()
         .map(|own| Run::Measured(Box::new(own), None));
@@ -94,7 +93,7 @@ pub(super) fn of_campaigns(
     sides: &[Side; 2],
     roles: &[Roles; 2],
     [a, b]: [&Campaign; 2],
-) -> Result<Vec<Passage>, InputError> {
+) -> Result<Vec<CleatRun>, InputError> {
     let mut others = cleats(b)?;
     let mut runs = Vec::new();
     for own in cleats(a)? {
@@ -124,27 +123,20 @@ fn height(of: &Cleat) -> f64 {
 ///
 /// # Errors
 /// Fails if the vehicle has no tyre, or if a ride cannot be simulated or compared.
-fn driven(sides: &[Side; 2], roles: &[Roles; 2], runs: Vec<Run>) -> Result<Vec<Passage>, InputError> {
+fn driven(sides: &[Side; 2], roles: &[Roles; 2], runs: Vec<Run>) -> Result<Vec<CleatRun>, InputError> {
     let [a, b] = [rides_of(&sides[0], &runs)?, rides_of(&sides[1], &runs)?];
-    let passages = runs.iter().zip(a.iter().zip(&b));
+    let cleat_runs = runs.iter().zip(a.iter().zip(&b));
     let feeling = feeling(roles);
-    passages
-        .map(|(run, rides)| passage(sides, &feeling, run, rides))
+    cleat_runs
+        .map(|(run, rides)| cleat_run(sides, &feeling, run, rides))
         .collect()
 }
 
 fn rides_of(side: &Side, runs: &[Run]) -> Result<Vec<Ride>, InputError> {
-    let (tyre, load) = tyre_of(&|name| side.vehicle.facts.get(name).copied(), &side.vehicle.file)?;
-    let car = Car {
-        model: &*side.model,
-        parameters: side.values.as_slice(),
-        tyre,
-        load,
-        variant: Variant::Complete,
-    };
+    let tyre = tyre_of(&|name| side.vehicle.facts.get(name).copied(), &side.vehicle.file)?;
     let drives: Vec<Drive> = runs.iter().map(Run::drive).collect();
-    let simulate = |on_progress: OnProgress<'_>| rides(&car, &drives, &Settings::default(), on_progress);
-    let all = while_counting(format!("{}: ride", side.name), simulate);
+    let what = format!("{}: ride", side.name);
+    let all = simulate_rides(what, &side.model, &side.values, tyre, &drives, Variant::Complete);
     let checked = runs
         .iter()
         .zip(all)
@@ -162,14 +154,14 @@ fn refused(run: &Run, error: &str) -> InputError {
     .into()
 }
 
-fn passage(sides: &[Side; 2], feeling: &[Key], run: &Run, (a, b): (&Ride, &Ride)) -> Result<Passage, InputError> {
+fn cleat_run(sides: &[Side; 2], feeling: &[Key], run: &Run, (a, b): (&Ride, &Ride)) -> Result<CleatRun, InputError> {
     let simulated = [simulated(&sides[0], a), simulated(&sides[1], b)];
     let cleats = run.measured();
     let measured: Vec<Record> = cleats.iter().map(|cleat| recorded(cleat)).collect();
     let rate = run.drive().sample_rate;
     let compared = compared(&simulated, &measured, feeling, rate).map_err(|error| refused(run, &error.to_string()))?;
     let role = |cleat: &&Cleat| if cleat.run.role == Role::Fit { "fit" } else { "held_out" };
-    Ok(Passage {
+    Ok(CleatRun {
         name: run.name(),
         speed: run.drive().speed,
         height: run.height(),
