@@ -211,7 +211,7 @@ fn ten_gigabytes_that_are_only_claimed_take_no_memory() {
     let second = file[..length].windows(4).rposition(|window| window == b"TDSm").unwrap();
     refused(
         &claiming("tdms/waveform_2segments.tdms", second + 12, &(8 * many).to_le_bytes()),
-        &["segment 2", "the 1 segments before it are whole"],
+        &["segment 2", "the segment before it is whole"],
     );
 
     let file = sample("mat/matlab65_struct_v6.mat");

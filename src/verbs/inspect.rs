@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::failure::Failure;
 use crate::json;
-use crate::table::{Table, number, or_dash};
+use crate::table::{Table, counted, number, or_dash};
 use crate::terminal::prose;
 use crate::units;
 use crate::verbs::Format;
@@ -66,6 +66,7 @@ struct Channel<'a> {
     samples: usize,
     missing: usize,
     rate: Option<f64>,
+    mean_rate: Option<f64>,
     start: Option<f64>,
     min: Option<f64>,
     max: Option<f64>,
@@ -118,6 +119,7 @@ impl<'a> Channel<'a> {
             samples: course.samples,
             missing: course.missing,
             rate: course.rate,
+            mean_rate: course.mean_rate,
             start: course.start,
             min: course.min,
             max: course.max,
@@ -153,7 +155,8 @@ impl<'a> Single<'a> {
 /// Contents of a file, as text.
 pub(super) fn text<T>(contents: &Contents<T>) -> String {
     let recording = &contents.recording;
-    let mut text = format!("{}, {} channels\n", recording.format, recording.signals.len());
+    let channels = counted(recording.signals.len(), "channel");
+    let mut text = format!("{}, {channels}\n", recording.format);
     if !recording.signals.is_empty() {
         text += &format!("\n{}", table(contents));
     }
@@ -191,7 +194,7 @@ fn table<T>(contents: &Contents<T>) -> String {
             units::of_file(0.0, &signal.unit).1.into(),
             course.samples.to_string(),
             course.missing.to_string(),
-            or_dash(course.rate, DIGITS),
+            rate(course),
             or_dash(course.start, DIGITS),
             shown(course.min),
             shown(course.max),
@@ -200,6 +203,14 @@ fn table<T>(contents: &Contents<T>) -> String {
         ]);
     }
     table.text()
+}
+
+/// The sample rate, or the mean of an uneven one.
+fn rate(course: &Course) -> String {
+    match (course.rate, course.mean_rate) {
+        (None, Some(mean)) => format!("~{}", number(mean, 3)),
+        (rate, _) => or_dash(rate, DIGITS),
+    }
 }
 
 fn scalars(scalars: &[Scalar]) -> String {

@@ -223,6 +223,7 @@ mod tests {
                         course.mean,
                         course.rms,
                         course.rate,
+                        course.mean_rate,
                         course.start,
                     ];
                     (
