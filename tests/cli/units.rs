@@ -204,6 +204,15 @@ fn messages_about_roads_and_tyres_are_in_the_units_asked_for() {
     let road = |units| qcar(&["simulate", CAMPAIGN, "--road", &road, "--units", units]);
     refused(&road("si"), &["found 0.5 m after 1 m at sample 3"]);
     refused(&road("engineering"), &["found 500 mm after 1000 mm at sample 3"]);
+    let fast = |units| qcar(&["simulate", CAMPAIGN, "--road", "C@720km/h", "--units", units]);
+    refused(
+        &fast("si"),
+        &["a speed of 200 m/s", "at least 0.5 m/s and at most 100 m/s"],
+    );
+    refused(
+        &fast("km/h"),
+        &["a speed of 720 km/h", "at least 1.8 km/h and at most 360 km/h"],
+    );
 }
 
 /// All files of a folder that are tables.
