@@ -121,15 +121,16 @@ impl RequestedRoad {
     }
 
     /// Speed and duration are checked here, not where the text is read: the units of messages are known now.
-    fn check(&self) -> Result<(), Problem> {
-        let within = |(what, value): (&str, f64), range: &RangeInclusive<f64>, si: &str| match range.contains(&value) {
-            true => Ok(()),
-            false => {
-                let (least, most) = (shown(*range.start(), si), shown(*range.end(), si));
-                let expected = format!("at least {least} and at most {most}");
-                let remedy = format!("write another {what}");
-                Err(self.problem(format!("a {what} of {}", shown(value, si)), &expected, &remedy))
+    fn check(&self) -> Result<(), InputError> {
+        let within = |(what, value): (&str, f64), range: &RangeInclusive<f64>, si: &str| {
+            if range.contains(&value) {
+                return Ok(());
             }
+            let (least, most) = (shown(*range.start(), si), shown(*range.end(), si));
+            let expected = format!("at least {least} and at most {most}");
+            let remedy = format!("write another {what}");
+            let problem = self.problem(format!("a {what} of {}", shown(value, si)), &expected, &remedy);
+            Err(InputError::from(problem))
         };
         within(("speed", self.speed), &SPEEDS, "m/s")?;
         match self.duration {

@@ -198,6 +198,14 @@ fn messages_about_roads_and_tyres_are_in_the_units_asked_for() {
     let tyre = |units| qcar(&[&simulate[..], &[units]].concat());
     refused(&tyre("si"), &["deflection is 0.4 m", "the radius, 0.35 m"]);
     refused(&tyre("mm"), &["deflection is 400 mm", "the radius, 350 mm"]);
+    // What is wrong in a file is quoted as it stands there, whatever the units of results.
+    let slow = text.replacen("peak_velocity = 0.025", "peak_velocity = \"-25 mm/s\"", 1);
+    assert_ne!(text, slow);
+    fs::write(own.join("campaign.toml"), slow).unwrap();
+    refused(
+        &tyre("si"),
+        &["peak_velocity`", "found \"-25 mm/s\", expected a number above zero"],
+    );
     let profile = folder.path().join("back.csv");
     fs::write(&profile, "x [m],z [m]\n0,0\n1,0.01\n0.5,0\n2,0\n").unwrap();
     let road = format!("{}@30km/h", profile.display());
