@@ -1,5 +1,6 @@
 //! Roads on the command line with their speed: `C@60km/h`, `belgian.crg#v=0.5@50km/h:20s`.
 
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -7,6 +8,7 @@ use qcar_runtime::campaign::{Declared, RoadSamples};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::metric::{Course, SEED};
 use qcar_runtime::road::{Class, Road, RoadError};
+use qcar_runtime::shown::shown;
 
 use crate::failure::flag;
 
@@ -47,13 +49,15 @@ const CLASSES: [(&str, Class); 8] = [
 ];
 
 /// Smallest and largest speed, m/s.
-const SPEEDS: std::ops::RangeInclusive<f64> = 0.5..=100.0;
+const SPEEDS: RangeInclusive<f64> = 0.5..=100.0;
 /// Shortest ride, s: about one oscillation of the body, with spectral lines at each hertz.
 const SHORTEST: f64 = 1.0;
 /// Requirement for a road.
 const DRIVABLE: &str = "heights on which a tyre can roll";
 /// Longest ride, s: a road of ISO 8608 is a sum of sines, and a record is kept in memory.
 const LONGEST: f64 = 600.0;
+/// Durations of a ride, s.
+const DURATIONS: RangeInclusive<f64> = SHORTEST..=LONGEST;
 
 impl FromStr for RequestedRoad {
     type Err = String;
@@ -71,17 +75,6 @@ impl FromStr for RequestedRoad {
             .map(|text| quantity(text, "s").ok_or_else(expected))
             .transpose()?;
         let duration = duration.map(|(duration, _)| duration);
-        if !SPEEDS.contains(&speed) {
-            let (least, most) = (SPEEDS.start(), SPEEDS.end());
-            return Err(format!(
-                "expected a speed of at least {least} and at most {most} m/s, found `{text}`"
-            ));
-        }
-        if duration.is_some_and(|duration| !(SHORTEST..=LONGEST).contains(&duration)) {
-            return Err(format!(
-                "expected a duration of at least {SHORTEST} and at most {LONGEST} s, found `{text}`"
-            ));
-        }
         Ok(Self {
             ground: Ground::of(ground.trim()).ok_or_else(expected)?,
             speed,
@@ -127,11 +120,31 @@ impl RequestedRoad {
         }
     }
 
+    /// Speed and duration are checked here, not where the text is read: the units of messages are known now.
+    fn check(&self) -> Result<(), InputError> {
+        let within = |(what, value): (&str, f64), range: &RangeInclusive<f64>, si: &str| {
+            if range.contains(&value) {
+                return Ok(());
+            }
+            let (least, most) = (shown(*range.start(), si), shown(*range.end(), si));
+            let expected = format!("at least {least} and at most {most}");
+            let remedy = format!("write another {what}");
+            let problem = self.problem(format!("a {what} of {}", shown(value, si)), &expected, &remedy);
+            Err(InputError::from(problem))
+        };
+        within(("speed", self.speed), &SPEEDS, "m/s")?;
+        match self.duration {
+            Some(duration) => within(("duration", duration), &DURATIONS, "s"),
+            None => Ok(()),
+        }
+    }
+
     /// The road.
     ///
     /// # Errors
-    /// Fails if a file cannot be read or is no road, or if the ride is too short or too long.
+    /// Fails if a file cannot be read or is no road, or if the ride is too slow, too fast, too short or too long.
     pub fn course(&self) -> Result<Course, InputError> {
+        self.check()?;
         match &self.ground {
             Ground::Random(class, seed) => {
                 let course = Course::random(*class, *seed, self.speed, self.duration);
@@ -220,20 +233,11 @@ mod tests {
                 "{text}"
             );
         }
-        for text in [
-            "",
-            "C",
-            "C@60",
-            "C#x@60km/h",
-            "@60km/h",
-            "C@0km/h",
-            "C@1000km/h",
-            "C@60km/h:0s",
-            "C@60km/h:0.9s",
-            "C@60km/h:1h",
-            "C@20mm",
-        ] {
+        for text in ["", "C", "C@60", "C#x@60km/h", "@60km/h", "C@20mm"] {
             assert!(of(text).is_err(), "{text}");
+        }
+        for text in ["C@0km/h", "C@1000km/h", "C@60km/h:0s", "C@60km/h:0.9s", "C@60km/h:1h"] {
+            assert!(of(text).unwrap().check().is_err(), "{text}");
         }
     }
 }

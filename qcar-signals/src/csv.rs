@@ -10,6 +10,7 @@ use plain::PlainRows;
 use rows::{Row, Rows};
 
 use crate::bytes::text;
+use crate::clock;
 use crate::error::{Fault, Place, Read};
 use crate::signal::Recording;
 use crate::table::{Cell, Column, Filled, Layout};
@@ -34,15 +35,15 @@ pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
         if is_binary(&text) {
             return Err(of_no_format(bytes));
         }
-        let found = format!("no row of numbers among the first {} lines", head.len());
+        let found = match head.len() {
+            1 => "one line without numbers".into(),
+            lines => format!("no row of numbers among the first {lines} lines"),
+        };
         let remedy = "export the table with one row a sample; separators may be , ; tab | or spaces";
         return Err(Fault::new(Place::File, found, "names and columns of numbers", remedy));
     };
-    let (first_line, names_line) = (
-        head[layout.first].line,
-        head[..layout.first].last().map_or(1, |row| row.line),
-    );
-    let (filled, lines) = fill(Rows::new(&text, delimiter), decimals, layout.columns, first_line)?;
+    let names_line = head[..layout.first].last().map_or(1, |row| row.line);
+    let (filled, lines) = fill(Rows::new(&text, delimiter), decimals, layout, &head)?;
     let mut recording = Recording::new("text table");
     let place = |column: &Column, row: Option<usize>| {
         let line = row.and_then(|row| lines.get(row)).copied().unwrap_or(names_line);
@@ -105,9 +106,15 @@ fn head(text: &str, delimiter: u8) -> Read<Vec<Row<'_>>> {
     Ok(head)
 }
 
-/// The columns of numbers from a line on, and the line of each row.
-fn fill(mut rows: Rows<'_>, decimals: Decimals, columns: Vec<Column>, first: u64) -> Read<(Filled, Vec<u64>)> {
+/// The columns of numbers, and the line of each row.
+fn fill(mut rows: Rows<'_>, decimals: Decimals, layout: Layout, head: &[Row<'_>]) -> Read<(Filled, Vec<u64>)> {
+    let Layout { first, columns } = layout;
     let width = columns.last().map_or(0, |column| column.index + 1);
+    let (first, body) = (head[first].line, &head[first.saturating_sub(1)..]);
+    let widest = body
+        .iter()
+        .find(|row| row.cells.len() >= width)
+        .map_or(first, |row| row.line);
     let mut numbers = vec![Vec::new(); columns.len()];
     let (mut row, mut lines) = (Row::default(), Vec::new());
     let mut plain_rows = PlainRows::new(rows.delimiter(), decimals);
@@ -126,7 +133,7 @@ fn fill(mut rows: Rows<'_>, decimals: Decimals, columns: Vec<Column>, first: u64
             lines.push(line);
             rows.skip(text.len());
         } else if rows.read(&mut row)? && row.line >= first && !row.is_empty() {
-            row.check_width(width)?;
+            row.check_width(width, widest)?;
             for (column, numbers) in columns.iter().zip(&mut numbers) {
                 numbers.push(decimals.number_of(&row, column)?);
             }
@@ -194,17 +201,25 @@ impl Decimals {
         match self.number(cell) {
             Some(number) if number.is_nan() => Cell::Missing,
             Some(number) => Cell::Number(number),
-            None => Cell::Text(cell.into()),
+            None => clock::seconds(cell).map_or_else(|| Cell::Text(cell.into()), Cell::Stamp),
         }
     }
 
     /// The number in a column of a row.
     fn number_of(self, row: &Row<'_>, column: &Column) -> Read<f64> {
         let cell = &row.cells[column.index];
-        self.number(cell).ok_or_else(|| {
+        let read = match column.stamped {
+            true if !is_missing(cell) => clock::seconds(cell),
+            _ => self.number(cell),
+        };
+        read.ok_or_else(|| {
             let place = Place::Cell(row.line, column.name.clone());
+            let expected = match column.stamped {
+                true => "a date or a clock time such as 12:30:05.25",
+                false => self.expected(),
+            };
             let remedy = "correct the cell, or leave it empty";
-            Fault::new(place, format!("`{cell}`"), self.expected(), remedy)
+            Fault::new(place, format!("`{cell}`"), expected, remedy)
         })
     }
 
@@ -222,7 +237,7 @@ impl Decimals {
             return None;
         }
         if !cell.contains(thousands) {
-            return cell.replace(decimal, ".").parse().ok();
+            return cell.replace(decimal, ".").replace(['d', 'D'], "e").parse().ok();
         }
         let (whole, fraction) = cell.split_once(decimal).unwrap_or((cell, ""));
         let digits = whole.trim_start_matches(['+', '-']);
@@ -276,7 +291,7 @@ fn looks_like_a_number(cell: &str) -> bool {
         && cell.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | ','))
         && cell
             .chars()
-            .all(|c| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | ',' | 'e' | 'E'))
+            .all(|c| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | ',' | 'e' | 'E' | 'd' | 'D'))
 }
 
 fn is_missing(cell: &str) -> bool {
@@ -299,6 +314,7 @@ mod tests {
             (Point, "1.234", Some(1.234)),
             (Point, "12,5", None),
             (Point, "-1.5E-3", Some(-1.5e-3)),
+            (Point, "-1.5D-03", Some(-1.5e-3)),
             (Point, "05.03.2024", None),
             (Point, "12 mm", None),
         ];

@@ -50,6 +50,21 @@ pub enum Place {
 /// Result of a reader.
 pub(crate) type Read<T> = Result<T, Box<Fault>>;
 
+/// A count with its noun, in the plural unless it is 1.
+pub(crate) fn counted(count: usize, what: &str) -> String {
+    let ending = if count == 1 { "" } else { "s" };
+    format!("{count} {what}{ending}")
+}
+
+/// What is left of a file that ends in its next part: `; the 2 segments before it are whole`, or nothing.
+pub(crate) fn whole_before(count: usize, part: &str) -> String {
+    match count {
+        0 => String::new(),
+        1 => format!("; the {part} before it is whole"),
+        _ => format!("; the {count} {part}s before it are whole"),
+    }
+}
+
 impl fmt::Display for Place {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

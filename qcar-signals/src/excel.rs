@@ -7,6 +7,7 @@ use std::panic::catch_unwind;
 use calamine::{DataRef, Reader, Xlsx, XlsxError};
 use zip::ZipArchive;
 
+use crate::clock;
 use crate::error::{Fault, Place, Read};
 use crate::limit::Budget;
 use crate::signal::{Recording, Scalar, Value};
@@ -63,13 +64,19 @@ pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
 fn workbook(bytes: &[u8]) -> Read<Recording> {
     let budget = Budget::of_file(bytes.len() as u64);
     count_unpacked(bytes, &budget)?;
-    let mut workbook: Xlsx<_> = Xlsx::new(Cursor::new(bytes)).map_err(|error| unreadable(Place::File, &error))?;
+    let mut workbook: Xlsx<_> = Xlsx::new(Cursor::new(bytes)).map_err(|error| match error {
+        XlsxError::FileNotFound(part) => no_workbook(&part),
+        error => unreadable(Place::File, &error),
+    })?;
     let mut recording = Recording::new("xlsx");
     let mut sheets = HashMap::new();
     for name in workbook.sheet_names() {
         let sheet = Sheet::read(&mut workbook, &name, &budget)?;
         sheet.add_table(&mut recording)?;
         sheets.insert(name, sheet);
+    }
+    if sheets.values().all(|sheet: &Sheet| sheet.rows.is_empty()) {
+        recording.pass_over("workbook", Place::File, "no sheet has a cell");
     }
     for (name, reference) in workbook.defined_names() {
         let Some((sheet, row, column)) = single_cell(reference) else {
@@ -108,6 +115,14 @@ fn unreadable(place: Place, error: &XlsxError) -> Box<Fault> {
         "a workbook of Excel (.xlsx)",
         remedy,
     )
+}
+
+/// A ZIP file that lacks a part of each workbook.
+fn no_workbook(part: &str) -> Box<Fault> {
+    let found = format!("a ZIP file without `{part}`");
+    let remedy =
+        "if it is an archive, unpack it and give a file in it; if it is a workbook, open it in Excel and save it again";
+    Fault::new(Place::File, found, "a workbook of Excel (.xlsx)", remedy)
 }
 
 /// A sheet: its filled cells, by row and column from 0.
@@ -149,13 +164,14 @@ impl Sheet {
                 DataRef::Bool(flag) => Cell::Number(f64::from(u8::from(flag))),
                 DataRef::String(text) if !text.trim().is_empty() => Cell::Text(text),
                 DataRef::SharedString(text) if !text.trim().is_empty() => Cell::Text(text.into()),
-                DataRef::DateTimeIso(text) | DataRef::DurationIso(text) => Cell::Text(text),
-                DataRef::DateTime(time) => Cell::Text(format!("the date or time {time}")),
+                DataRef::DateTimeIso(text) => clock::seconds(&text).map_or(Cell::Text(text), Cell::Stamp),
+                DataRef::DurationIso(text) => Cell::Text(text),
+                DataRef::DateTime(time) => Cell::Stamp(time.as_f64() * clock::DAY),
                 DataRef::Error(_) => Cell::Missing,
                 _ => {
                     if let Some(formula) = cell.formula {
                         sheet.uncomputed.insert((row, column), formula);
-                        sheet.rows.entry(row).or_default();
+                        sheet.rows.entry(row).or_default().insert(column, Cell::Uncomputed);
                     }
                     continue;
                 }
@@ -179,7 +195,8 @@ impl Sheet {
         let numbers: Vec<u32> = self.rows.keys().copied().collect();
         let Some(layout) = Layout::find(&head) else {
             if !self.rows.is_empty() {
-                recording.pass_over(&self.name, self.place(0, 0), "no table of numbers");
+                let (place, why) = self.no_table();
+                recording.pass_over(&self.name, place, why);
             }
             return Ok(());
         };
@@ -208,19 +225,45 @@ impl Sheet {
         })
     }
 
+    /// Why the sheet has no table, with the cell that shows it.
+    fn no_table(&self) -> (Place, String) {
+        let texts = self.rows.iter().flat_map(|(row, cells)| {
+            let cell = move |(column, cell): (&u32, &Cell)| match cell {
+                Cell::Text(text) => Some(((*row, *column), text.clone())),
+                _ => None,
+            };
+            cells.iter().filter_map(cell)
+        });
+        let is_number = |text: &str| text.trim().replace(',', ".").parse().is_ok_and(f64::is_finite);
+        let mut numbers = texts.filter(|(_, text)| is_number(text));
+        match numbers.next() {
+            Some(((row, column), text)) => {
+                let why = format!("no table of numbers, but numbers as texts, such as `{text}`: convert them in Excel");
+                (self.place(row, column), why)
+            }
+            None => (self.place(0, 0), "no table of numbers".into()),
+        }
+    }
+
     fn fill(&self, columns: Vec<Column>, first: u32, count: usize) -> Read<Filled> {
         let mut numbers = vec![Vec::with_capacity(count); columns.len()];
         for (row, cells) in self.rows.range(first..).take(count) {
             for (column, numbers) in columns.iter().zip(&mut numbers) {
                 let index = column.index as u32;
                 let found = match (cells.get(&index), self.uncomputed.get(&(*row, index))) {
-                    (Some(Cell::Number(number)), _) => {
+                    (Some(Cell::Number(number)), _) if !column.stamped => {
                         numbers.push(*number);
                         continue;
                     }
+                    (Some(Cell::Stamp(seconds)), _) if column.stamped => {
+                        numbers.push(*seconds);
+                        continue;
+                    }
+                    (Some(Cell::Number(number)), _) => format!("the number {number} among dates and times"),
+                    (Some(Cell::Stamp(_)), _) => "a date or a time among numbers".into(),
                     (_, Some(formula)) => format!("the formula `={formula}` without a result"),
                     (Some(Cell::Text(text)), _) => format!("the text `{text}`"),
-                    (Some(Cell::Missing) | None, None) => {
+                    (Some(Cell::Missing | Cell::Uncomputed) | None, None) => {
                         numbers.push(f64::NAN);
                         continue;
                     }
@@ -242,6 +285,7 @@ impl Sheet {
         let value = match (cell(column), self.uncomputed.get(&(row, column))) {
             (Some(Cell::Number(number)), _) => Value::Number(*number),
             (Some(Cell::Text(text)), _) => Value::Text(text.clone()),
+            (Some(Cell::Stamp(_)), _) => Value::Text("a date or a time".into()),
             (_, Some(formula)) => Value::Formula(formula.clone()),
             (_, None) => Value::Empty,
         };

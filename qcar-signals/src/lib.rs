@@ -27,6 +27,8 @@ pub mod content;
 mod bytes;
 // Spellings of units.
 mod units;
+// Spellings of dates and clock times.
+mod clock;
 // Conversion of units to SI.
 pub mod si;
 // Names, units and columns of a table in any format.

@@ -26,9 +26,10 @@ pub(crate) fn is_mat(bytes: &[u8]) -> bool {
     bytes.len() >= HEADER && matches!(&bytes[VERSION + 2..HEADER], b"IM" | b"MI") && bytes[..4] != [0; 4]
 }
 
-/// True for HDF5 without the header of MATLAB.
+/// True for HDF5 without the header of MATLAB; 512 bytes of anything else may stand before it.
 pub(crate) fn is_hdf5(bytes: &[u8]) -> bool {
-    bytes.starts_with(hdf5::SIGNATURE)
+    let begins = |at: usize| bytes.get(at..).is_some_and(|rest| rest.starts_with(hdf5::SIGNATURE));
+    begins(0) || begins(512)
 }
 
 /// Reads a file that begins with a header of MATLAB, or is HDF5.

@@ -64,17 +64,36 @@ pub(crate) fn read(file: Bytes, wanted: &Wanted) -> Read<Recording> {
     }
 }
 
-/// The visited blocks of a chain; a chain that returns to one of them would never end.
+/// What was read of a file so far.
 #[derive(Default)]
-struct Visited(HashSet<u64>);
+struct Visited {
+    /// The blocks of a chain; a chain that returns to one of them would never end.
+    blocks: HashSet<u64>,
+    /// The names of groups, each of which is there once.
+    groups: HashSet<String>,
+}
 
 impl Visited {
     fn first_time(&mut self, at: u64) -> Read<()> {
-        if self.0.insert(at) {
+        if self.blocks.insert(at) {
             return Ok(());
         }
         let found = "a link to a block that was read before";
         Err(Fault::damaged(Place::Byte(at), found, "links that lead on"))
+    }
+
+    /// The name of the next group, by which channels of one name are told apart: the first line of the name that the
+    /// file gives it, with its number if there is none or another group has it.
+    fn group(&mut self, given: &str) -> String {
+        let given = given.lines().next().unwrap_or("").trim();
+        let number = self.groups.len() + 1;
+        let name = match given {
+            "" => format!("group {number}"),
+            _ if self.groups.contains(given) => format!("{given} (group {number})"),
+            _ => given.into(),
+        };
+        self.groups.insert(name.clone());
+        name
     }
 }
 
@@ -227,7 +246,7 @@ fn add_group(
                 recording.pass_over(
                     &channel.name,
                     place.clone(),
-                    format!("its times must never fall, but one is {why}"),
+                    format!("its times must never decrease, but it has {why}"),
                 );
             }
         }
@@ -386,4 +405,17 @@ fn times(master: &Channel, read: Times) -> Result<TimeBase, String> {
         Times::Passed(steps) => steps.time_base(),
     };
     base.map_err(|(at, found)| format!("{found} in sample {}", at + 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Visited;
+
+    #[test]
+    fn each_group_has_a_name_of_its_own() {
+        let mut visited = Visited::default();
+        let given = ["CAN", "", "CAN", " rig\nby hand", "CAN"];
+        let names = given.map(|given| visited.group(given));
+        assert_eq!(names, ["CAN", "group 2", "CAN (group 3)", "rig", "CAN (group 5)"]);
+    }
 }

@@ -338,11 +338,15 @@ impl Shape {
             return Ok(());
         }
         let whole = data.len() as usize / group;
-        let found = format!(
-            "{} bytes of samples, in which {whole} groups are whole: the first {} samples of each channel",
-            data.len(),
-            whole * points_of_group
-        );
+        let kept = match whole {
+            0 => "less than a group".into(),
+            1 => format!("in which 1 group is whole: the first {points_of_group} samples of each channel"),
+            _ => format!(
+                "in which {whole} groups are whole: the first {} samples of each channel",
+                whole * points_of_group
+            ),
+        };
+        let found = format!("{} bytes of samples, {kept}", data.len());
         let expected =
             format!("{groups} groups ({frames} frames of {points_of_frame}, {channels} channels, {promised} bytes)");
         Err(Fault::cut_off(data.place(data.len()), found, expected))

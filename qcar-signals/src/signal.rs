@@ -62,6 +62,8 @@ pub enum TimeBase {
     Uneven {
         /// Time of the first sample, s.
         start: f64,
+        /// Mean sample interval, s; 0 if there is only one sample.
+        mean_step: f64,
     },
     /// Not in the file.
     Unknown,
@@ -195,9 +197,20 @@ impl TimeBase {
         match self {
             TimeBase::Even { start, .. } => Some(*start),
             TimeBase::Times(times) => times.first().copied(),
-            TimeBase::Uneven { start } => Some(*start),
+            TimeBase::Uneven { start, .. } => Some(*start),
             TimeBase::Unknown => None,
         }
+    }
+
+    /// Samples per second on average, evenly spaced or not.
+    pub fn mean_rate(&self) -> Option<f64> {
+        let step = match self {
+            TimeBase::Even { step, .. } => *step,
+            TimeBase::Times(times) => Steps::of(times).mean_step(),
+            TimeBase::Uneven { mean_step, .. } => *mean_step,
+            TimeBase::Unknown => return None,
+        };
+        (step > 0.0).then(|| 1.0 / step)
     }
 
     /// Samples per second, if they are evenly spaced: every step within 1 % of the mean step.
@@ -262,10 +275,18 @@ impl Steps {
         }
     }
 
+    /// The mean step; 0 for a single time.
+    fn mean_step(&self) -> f64 {
+        match self.count {
+            0 | 1 => 0.0,
+            count => (self.last - self.first) / (count - 1) as f64,
+        }
+    }
+
     /// The mean step if every step is within 1 % of it.
     fn even(&self) -> Option<f64> {
         let (least, most) = self.range?;
-        let mean = (self.last - self.first) / (self.count - 1) as f64;
+        let mean = self.mean_step();
         (mean > 0.0 && most - mean <= 0.01 * mean && mean - least <= 0.01 * mean).then_some(mean)
     }
 
@@ -278,7 +299,10 @@ impl Steps {
         Ok(match (own.count, own.even()) {
             (0, _) => TimeBase::Unknown,
             (_, Some(step)) => TimeBase::Even { start: own.first, step },
-            (_, None) => TimeBase::Uneven { start: own.first },
+            (_, None) => TimeBase::Uneven {
+                start: own.first,
+                mean_step: own.mean_step(),
+            },
         })
     }
 }
@@ -322,6 +346,7 @@ mod tests {
             let kept = TimeBase::from_times(times.clone()).unwrap();
             assert_eq!(passed.start(), times.first().copied());
             assert_eq!((passed.rate(), kept.rate()), (rate(&times), rate(&times)));
+            assert_eq!(passed.mean_rate(), kept.mean_rate());
         }
         for (times, at, found) in [
             ([0.0, 1.0, 0.5], 2, "the time 0.5 s after 1 s"),

@@ -1,5 +1,6 @@
 //! Contents of a table in any format: headings, then names and units, then columns of numbers.
 
+use crate::clock::since_first;
 use crate::error::{Fault, Place, Read};
 use crate::signal::{Recording, Signal, Source, TimeBase};
 use crate::units::{bare, in_seconds, is_time, is_unit, name_and_unit, seconds};
@@ -10,6 +11,10 @@ pub(crate) enum Cell {
     /// Empty, or a text for a missing value.
     Missing,
     Number(f64),
+    /// A date or a clock time, s.
+    Stamp(f64),
+    /// A formula whose result was never computed.
+    Uncomputed,
     Text(String),
 }
 
@@ -27,6 +32,8 @@ pub(crate) struct Column {
     pub(crate) index: usize,
     pub(crate) name: String,
     pub(crate) unit: String,
+    /// True if its cells are dates or clock times.
+    pub(crate) stamped: bool,
 }
 
 impl Layout {
@@ -78,19 +85,28 @@ impl<'a> Headings<'a> {
         let text = |row: Option<&[Cell]>| match row?.get(index)? {
             Cell::Text(text) => Some(text.clone()),
             Cell::Number(number) => Some(number.to_string()),
-            Cell::Missing => None,
+            Cell::Missing | Cell::Stamp(_) | Cell::Uncomputed => None,
         };
         let named = text(self.names);
-        let has_numbers = body.iter().any(|row| matches!(row.get(index), Some(Cell::Number(_))));
-        if named.is_none() && !has_numbers {
+        let first = body
+            .iter()
+            .filter_map(|row| row.get(index))
+            .find(|cell| **cell != Cell::Missing);
+        if named.is_none() && first.is_none() {
             return None;
         }
+        let stamped = matches!(first, Some(Cell::Stamp(_)));
         let (name, unit) = match (named, text(self.units)) {
             (Some(name), Some(unit)) => (name.trim().into(), bare(&unit).into()),
             (Some(heading), None) => name_and_unit(&heading),
             (None, unit) => (format!("column {}", index + 1), unit.unwrap_or_default()),
         };
-        Some(Column { index, name, unit })
+        Some(Column {
+            index,
+            name,
+            unit,
+            stamped,
+        })
     }
 }
 
@@ -144,11 +160,18 @@ impl Filled {
         place: &dyn Fn(&Column, Option<usize>) -> Place,
     ) -> Read<()> {
         let mut time = TimeBase::Unknown;
-        if let Some(at) = self.columns.iter().position(|column| is_time(&column.name)) {
+        let is_stamped = |column: &Column| column.stamped;
+        let named = self.columns.iter().position(|column| is_time(&column.name));
+        if let Some(at) = named.or_else(|| self.columns.iter().rposition(is_stamped)) {
             let (column, times) = (self.columns.remove(at), self.numbers.remove(at));
             time = time_base(&column, times, place)?;
         }
-        for (column, samples) in self.columns.into_iter().zip(self.numbers) {
+        for column in self.columns.iter().filter(|column| column.stamped) {
+            let why = "dates and clock times that are not the times of the rows";
+            recording.pass_over(&column.name, place(column, None), why);
+        }
+        let channels = self.columns.into_iter().zip(self.numbers);
+        for (column, samples) in channels.filter(|(column, _)| !column.stamped) {
             let place = place(&column, None);
             recording.signals.push(Signal {
                 name: column.name,
@@ -167,14 +190,19 @@ impl Filled {
 }
 
 fn time_base(column: &Column, mut times: Vec<f64>, place: &dyn Fn(&Column, Option<usize>) -> Place) -> Read<TimeBase> {
-    let Some(factor) = seconds(&column.unit) else {
+    if column.stamped {
+        since_first(&mut times);
+    }
+    let Some(factor) = seconds(&column.unit).or(column.stamped.then_some(1.0)) else {
         let found = format!("times in `{}`", column.unit);
         let remedy = "give the time in one of these units";
         return Err(Fault::new(place(column, None), found, "s, ms, us, ns, min or h", remedy).of(&column.name));
     };
-    in_seconds(&mut times, factor);
+    if !column.stamped {
+        in_seconds(&mut times, factor);
+    }
     TimeBase::from_times(times).map_err(|(row, found)| {
         let remedy = "correct the row, or rename the column if it holds no times";
-        Fault::new(place(column, Some(row)), found, "times that never fall", remedy).of(&column.name)
+        Fault::new(place(column, Some(row)), found, "times that never decrease", remedy).of(&column.name)
     })
 }

@@ -11,10 +11,10 @@ mod scaling;
 use std::collections::HashMap;
 
 use crate::bytes::{Bytes, Order};
-use crate::error::{Fault, Place, Read};
+use crate::error::{Fault, Place, Read, whole_before};
 use crate::find::Wanted;
 use crate::signal::{Recording, Signal, Source, TimeBase, evenly};
-use crate::units::{in_seconds, is_time, seconds};
+use crate::units::{in_seconds, is_time, name_and_unit, seconds};
 
 use metadata::{Index, Layout, Properties, Scaler, object};
 use scaling::Scaling;
@@ -69,9 +69,9 @@ fn segment<'a>(file: &Bytes<'a>, at: u64, length: u64, raw: u64, number: u32) ->
             _ => format!("{} bytes of data", length.saturating_sub(raw)),
         };
         let found = format!(
-            "{} bytes of data in segment {number}; the {} segments before it are whole",
+            "{} bytes of data in segment {number}{}",
             there.saturating_sub(raw),
-            number - 1
+            whole_before(number as usize - 1, "segment")
         );
         return Err(Fault::cut_off(Place::Byte(at), found, promised));
     }
@@ -263,7 +263,7 @@ impl File {
         let times = times_of_groups(&channels)?;
         for (group, name, object, samples) in channels {
             let of_group = times.get(&group).filter(|_| object.step().is_none());
-            if of_group.is_some() && is_time(&name) {
+            if of_group.is_some() && has_times(&name) {
                 continue;
             }
             let time = match (object.step(), of_group) {
@@ -300,7 +300,11 @@ fn times_of_groups(channels: &[Channel<'_>]) -> Read<HashMap<String, TimeBase>> 
     };
     let mut times = HashMap::new();
     for (group, name, object, samples) in channels {
-        let Some(factor) = seconds(&object.unit()).filter(|_| is_time(name) && is_untimed(group)) else {
+        let unit = match object.unit() {
+            unit if unit.is_empty() => name_and_unit(name).1,
+            unit => unit,
+        };
+        let Some(factor) = seconds(&unit).filter(|_| has_times(name) && is_untimed(group)) else {
             continue;
         };
         let mut own = samples.clone();
@@ -309,7 +313,7 @@ fn times_of_groups(channels: &[Channel<'_>]) -> Read<HashMap<String, TimeBase>> 
             Fault::damaged(
                 object.place.clone(),
                 format!("{found} in sample {}", at + 1),
-                "times that never fall",
+                "times that never decrease",
             )
             .of(name)
         })?;
@@ -359,9 +363,14 @@ impl Object {
     }
 }
 
+/// True if a channel of this name, which may end with a unit, has the times of its group.
+fn has_times(name: &str) -> bool {
+    is_time(&name_and_unit(name).0)
+}
+
 /// True if the values of an object are read: for a wanted channel, and for a channel that may be its times.
 fn is_read(path: &str, wanted: &Wanted) -> bool {
-    channel_of(path).is_some_and(|(group, name)| wanted.has(&group, &name) || is_time(&name))
+    channel_of(path).is_some_and(|(group, name)| wanted.has(&group, &name) || has_times(&name))
 }
 
 /// Group and channel of a path such as `/'rig'/'wheel_left_z'`; a quote within a name is doubled.

@@ -8,7 +8,7 @@ use std::str::FromStr;
 use memchr::memchr;
 
 use crate::bytes::{Number, Order, text};
-use crate::error::{Fault, Place, Read};
+use crate::error::{Fault, Place, Read, whole_before};
 use crate::signal::{Recording, Signal, Source, TimeBase, evenly};
 
 /// True if a file begins like UFF: a line of -1, then the number of a dataset.
@@ -256,7 +256,7 @@ fn function(recording: &mut Recording, lines: &mut Lines, header: &Header, units
         None => function.ascii(lines),
     };
     let (times, samples) = numbers.map_err(|mut fault| {
-        fault.found += &format!("; the {whole} functions before it are whole");
+        fault.found += &whole_before(whole, "function");
         fault.of(&function.name)
     })?;
     if function.complex || !function.over_time {

@@ -43,8 +43,8 @@ pub(crate) fn bare(text: &str) -> &str {
     inner.unwrap_or(text).trim()
 }
 
-/// A heading such as `Travel [mm]`, `Travel (mm)` or `Travel / mm` as name and unit. Square brackets always contain a
-/// unit, the other forms only if their content is one.
+/// A heading such as `Travel [mm]`, `Travel (mm)`, `Travel / mm` or `Travel in mm` as name and unit. Square brackets always
+/// contain a unit, the other forms only if their content is one.
 pub(crate) fn name_and_unit(heading: &str) -> (String, String) {
     let heading = heading.trim();
     let bracketed = |open: char, close: char| {
@@ -52,11 +52,14 @@ pub(crate) fn name_and_unit(heading: &str) -> (String, String) {
         let sure = open == '[' || is_unit(unit);
         (sure && !name.trim().is_empty()).then(|| (name.trim().to_string(), unit.trim().to_string()))
     };
-    let after_slash = || {
-        let (name, unit) = heading.split_once(" / ")?;
+    let after = |word: &str| {
+        let (name, unit) = heading.split_once(word)?;
         is_unit(unit).then(|| (name.trim().to_string(), unit.trim().to_string()))
     };
-    let split = bracketed('[', ']').or_else(|| bracketed('(', ')')).or_else(after_slash);
+    let split = bracketed('[', ']')
+        .or_else(|| bracketed('(', ')'))
+        .or_else(|| after(" / "))
+        .or_else(|| after(" in "));
     split.unwrap_or_else(|| (heading.into(), String::new()))
 }
 
@@ -117,6 +120,8 @@ mod tests {
             ("Acceleration (front)", "Acceleration (front)", ""),
             ("Force (kN)", "Force", "kN"),
             ("Kraft / N", "Kraft", "N"),
+            ("Weg in mm", "Weg", "mm"),
+            ("Force in front", "Force in front", ""),
             ("time", "time", ""),
         ];
         for (heading, name, unit) in cases {

@@ -2,6 +2,7 @@
 
 mod damaged;
 mod flaws;
+mod habits;
 mod parts;
 mod resampling;
 mod roads;

@@ -280,7 +280,7 @@ fn rpc() {
     let parts = [
         "2 groups (7 frames of 512, 4 channels, 32768 bytes)",
         "21249 bytes",
-        "1 groups are whole",
+        "1 group is whole",
         "2048 samples",
     ];
     says(&fault, &parts);
@@ -301,7 +301,7 @@ fn tdms() {
             "56000 bytes",
             "38845 bytes",
             "segment 2",
-            "the 1 segments before it are whole",
+            "the segment before it is whole",
         ],
     );
 }
@@ -458,7 +458,7 @@ fn a_cell_that_is_no_number_is_named() {
             vec!["line 4, column `a`", "`x`", "decimal comma"],
         ),
         ("t;a\r\n\r\n0;1,5\r\n\r\n1;2,5\r\n2;x\r\n", vec!["line 6, column `a`"]),
-        ("t,a\n0,1.5\n1,2.5\n2\n", vec!["line 4", "1 columns", "2 columns"]),
+        ("t,a\n0,1.5\n1,2.5\n2\n", vec!["line 4", "1 column,", "2 columns"]),
         (
             "t,a\n0,1.5\n1,2.5\n0.5,2\n",
             vec!["line 4, column `t`", "0.5 s after 1 s"],

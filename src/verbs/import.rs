@@ -78,7 +78,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         catalogue::is_shipped(&arguments.model),
     );
     let mut text = make_head(&name, &model_name, model.about());
-    text += &sensors::sections(&proposed);
+    text += &sensors::sections(&proposed, model.about());
     text += &kind::sections(&runs.iter().flatten().collect::<Vec<_>>());
     put(&arguments.out, "campaign.toml", &text)?;
     Ok(prose(&report(arguments, &files, &proposed, &runs)))

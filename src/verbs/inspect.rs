@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::failure::Failure;
 use crate::json;
-use crate::table::{Table, number, or_dash};
+use crate::table::{Table, counted, number, or_dash};
 use crate::terminal::prose;
 use crate::units;
 use crate::verbs::Format;
@@ -67,6 +67,7 @@ struct Channel<'a> {
     samples: usize,
     missing: usize,
     rate: Option<f64>,
+    mean_rate: Option<f64>,
     start: Option<f64>,
     min: Option<f64>,
     max: Option<f64>,
@@ -119,6 +120,7 @@ impl<'a> Channel<'a> {
             samples: summary.samples,
             missing: summary.missing,
             rate: summary.rate,
+            mean_rate: summary.mean_rate,
             start: summary.start,
             min: summary.min,
             max: summary.max,
@@ -154,7 +156,8 @@ impl<'a> Single<'a> {
 /// Contents of a file, as text.
 pub(super) fn text<T>(contents: &Contents<T>) -> String {
     let recording = &contents.recording;
-    let mut text = format!("{}, {} channels\n", recording.format, recording.signals.len());
+    let channels = counted(recording.signals.len(), "channel");
+    let mut text = format!("{}, {channels}\n", recording.format);
     if !recording.signals.is_empty() {
         text += &format!("\n{}", table(contents));
     }
@@ -192,7 +195,7 @@ fn table<T>(contents: &Contents<T>) -> String {
             units::of_file(0.0, &signal.unit).1.into(),
             summary.samples.to_string(),
             summary.missing.to_string(),
-            or_dash(summary.rate, DIGITS),
+            rate(summary),
             or_dash(summary.start, DIGITS),
             shown(summary.min),
             shown(summary.max),
@@ -201,6 +204,14 @@ fn table<T>(contents: &Contents<T>) -> String {
         ]);
     }
     table.text()
+}
+
+/// The sample rate, or the mean of an uneven one.
+fn rate(summary: &ChannelSummary) -> String {
+    match (summary.rate, summary.mean_rate) {
+        (None, Some(mean)) => format!("~{}", number(mean, 3)),
+        (rate, _) => or_dash(rate, DIGITS),
+    }
 }
 
 fn scalars(scalars: &[Scalar]) -> String {

@@ -277,7 +277,7 @@ fn what_is_no_road_is_refused_with_its_place() {
     }
     let short = qcar(&["simulate", AXLE, "--road", "C@20km/h:0.1s"]);
     assert!(
-        short.status == 2 && short.stderr.contains("at least 1 and at most 600 s"),
+        short.status == 2 && short.stderr.contains("at least 1 s and at most 600 s"),
         "{}",
         short.stderr
     );

@@ -388,7 +388,17 @@ fn a_metric_or_parameter_that_is_not_there_is_refused() {
             "`k_wheel_x`, which is not among the parameters",
         ),
         (&["sensitivity", "axle_a", "--road", "Z@60km/h"], "C@60km/h"),
-        (&["sensitivity", "axle_a", "--road", "C@1e9km/h"], "at most 100 m/s"),
+        (
+            &[
+                "sensitivity",
+                "axle_a",
+                "--campaign",
+                "models/campaigns/axle_a_rig",
+                "--road",
+                "C@1e9km/h",
+            ],
+            "at most 100 m/s",
+        ),
         (&["sensitivity", "quarter_car", "--road", "C@60km/h"], "static_tire_def"),
         (
             &["sensitivity", "models/campaigns"],

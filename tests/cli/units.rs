@@ -198,12 +198,29 @@ fn messages_about_roads_and_tyres_are_in_the_units_asked_for() {
     let tyre = |units| qcar(&[&simulate[..], &[units]].concat());
     refused(&tyre("si"), &["deflection is 0.4 m", "the radius, 0.35 m"]);
     refused(&tyre("mm"), &["deflection is 400 mm", "the radius, 350 mm"]);
+    // What is wrong in a file is quoted as it stands there, whatever the units of results.
+    let slow = text.replacen("peak_velocity = 0.025", "peak_velocity = \"-25 mm/s\"", 1);
+    assert_ne!(text, slow);
+    fs::write(own.join("campaign.toml"), slow).unwrap();
+    refused(
+        &tyre("si"),
+        &["peak_velocity`", "found \"-25 mm/s\", expected a number above zero"],
+    );
     let profile = folder.path().join("back.csv");
     fs::write(&profile, "x [m],z [m]\n0,0\n1,0.01\n0.5,0\n2,0\n").unwrap();
     let road = format!("{}@30km/h", profile.display());
     let road = |units| qcar(&["simulate", CAMPAIGN, "--road", &road, "--units", units]);
     refused(&road("si"), &["found 0.5 m after 1 m at sample 3"]);
     refused(&road("engineering"), &["found 500 mm after 1000 mm at sample 3"]);
+    let fast = |units| qcar(&["simulate", CAMPAIGN, "--road", "C@720km/h", "--units", units]);
+    refused(
+        &fast("si"),
+        &["a speed of 200 m/s", "at least 0.5 m/s and at most 100 m/s"],
+    );
+    refused(
+        &fast("km/h"),
+        &["a speed of 720 km/h", "at least 1.8 km/h and at most 360 km/h"],
+    );
 }
 
 /// All files of a folder that are tables.

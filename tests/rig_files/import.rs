@@ -6,7 +6,7 @@ use std::path::Path;
 use qcar_runtime::campaign::Test;
 
 use crate::formats::sweeps;
-use crate::writers::{Channel, Group, mdf4};
+use crate::writers::{Channel, Group, mdf4, tdms};
 use crate::{open, qcar};
 
 fn files(folder: &Path) {
@@ -101,6 +101,55 @@ fn sweeps_of_one_recording_become_runs() {
             "{from} {to} {begins}"
         );
     }
+}
+
+/// Stamps that are late by up to a tenth of a step.
+#[test]
+fn a_sweep_is_found_between_late_stamps() {
+    let folder = tempfile::tempdir().unwrap();
+    let even = sweeps().remove(0);
+    let late = |at: usize| (at as f64 + 0.1 * (at as f64 * 0.618).fract()) / even.rate;
+    let group = Group::stamped((0..even.len()).map(late).collect(), even.channels);
+    fs::write(folder.path().join("late.mf4"), mdf4::file(&[group])).unwrap();
+    let (status, said) = qcar(folder.path(), "import late.mf4 --out rig --model axle_a");
+    assert!(
+        status == 0 && said.contains("a logarithmic sweep from 0.5 to 30 Hz"),
+        "{said}"
+    );
+    let text = fs::read_to_string(folder.path().join("rig/campaign.toml")).unwrap();
+    assert!(
+        text.contains("# sample_rate is not given: it follows from the times"),
+        "{text}"
+    );
+    let campaign = open(&folder.path().join("rig")).unwrap();
+    let Test::Sweep(sweep) = &campaign.runs[0].test else {
+        panic!("{text}")
+    };
+    assert!(
+        (sweep.sample_rate / even.rate - 1.0).abs() < 0.01,
+        "{}",
+        sweep.sample_rate
+    );
+}
+
+/// A group that is called `lon`, with sensors along z.
+#[test]
+fn the_name_of_a_channel_says_more_than_that_of_its_group() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut file = tdms::file(&sweeps()[0]);
+    let places: Vec<usize> = (0..file.len() - 5)
+        .filter(|&at| &file[at..at + 5] == b"'rig'")
+        .collect();
+    assert!(!places.is_empty());
+    places
+        .iter()
+        .for_each(|&at| file[at + 1..at + 4].copy_from_slice(b"lon"));
+    fs::write(folder.path().join("lon.tdms"), file).unwrap();
+    let (status, said) = qcar(folder.path(), "import lon.tdms --out rig --model axle_a");
+    assert!(
+        status == 0 && said.contains("body_left_z") && !said.contains("body_left_x"),
+        "{said}"
+    );
 }
 
 #[test]

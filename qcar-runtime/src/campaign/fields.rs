@@ -101,6 +101,12 @@ impl<'a> Section<'a> {
             .note(span, self.path(key), found.into(), expected.into(), remedy.into());
     }
 
+    /// The value of a key as it stands in the document, with its unit; messages quote it so that it can be found.
+    pub fn written(&self, key: &str) -> &str {
+        let span = self.table.get(key).map_or(0..0, Spanned::span);
+        self.document.text.get(span).unwrap_or("")
+    }
+
     /// Records problems of a file that this one names.
     pub fn adopt(&self, error: InputError) {
         self.document.problems.borrow_mut().extend(error.problems);
@@ -182,7 +188,7 @@ impl<'a> Section<'a> {
         if number > 0.0 {
             return Some(number);
         }
-        self.wrong(key, format!("{number}"), "a number above zero", "correct the value");
+        self.wrong(key, self.written(key), "a number above zero", "correct the value");
         None
     }
 
@@ -212,7 +218,7 @@ impl<'a> Section<'a> {
         }
         self.wrong(
             key,
-            format!("[{lower}, {upper}]"),
+            self.written(key),
             "the lower bound below the upper",
             "put them in that order",
         );

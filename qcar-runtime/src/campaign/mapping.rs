@@ -147,10 +147,10 @@ pub(super) fn window(section: &Section<'_>) -> Option<Window> {
     if let (Some(from), Some(to)) = (from, to)
         && from >= to
     {
-        let expected = format!("above `from = {from}`");
+        let expected = format!("above `from = {}`", section.written("from"));
         section.wrong(
             "to",
-            format!("{to} s"),
+            section.written("to"),
             expected,
             "correct the two times: the window is empty",
         );

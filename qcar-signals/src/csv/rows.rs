@@ -6,7 +6,7 @@ use std::borrow::Cow;
 
 use memchr::{memchr, memchr2, memchr3};
 
-use crate::error::{Fault, Place, Read};
+use crate::error::{Fault, Place, Read, counted};
 
 /// Most cells of a row: four times as many as a sheet of Excel has. A row of separators alone would take many times its
 /// length in memory.
@@ -24,15 +24,15 @@ impl Row<'_> {
         self.cells.iter().all(|cell| cell.is_empty())
     }
 
-    /// Refuses a row that has not the columns of its table; cells after them may be empty.
-    pub(super) fn check_width(&self, width: usize) -> Read<()> {
+    /// Refuses a row that has not the columns of its table, as the line `widest` has; cells after them may be empty.
+    pub(super) fn check_width(&self, width: usize, widest: u64) -> Read<()> {
         let after = self.cells.get(width..);
         if after.is_some_and(|after| after.iter().all(|cell| cell.is_empty())) {
             return Ok(());
         }
-        let found = format!("{} columns", self.cells.len());
+        let found = counted(self.cells.len(), "column");
         let remedy = "complete the row, or delete what is no part of the table";
-        let expected = format!("{width} columns as above");
+        let expected = format!("{width} columns as in line {widest}");
         Err(Fault::new(Place::Line(self.line), found, expected, remedy))
     }
 }

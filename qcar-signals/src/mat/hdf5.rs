@@ -20,7 +20,7 @@ use crate::limit::Budget;
 
 use super::value::{Array, Fields, Value, Variable, is_read, of_fields};
 
-use messages::{Class, Header};
+use messages::{Class, Header, Layout};
 
 pub(super) const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// An address that is not there.
@@ -119,9 +119,12 @@ impl<'a> Reader<'a> {
     /// The value of a variable.
     fn variable(&mut self, name: &str, address: u64, wanted: &Wanted) -> Read<Value> {
         let header = Header::read(&self.file, address)?;
+        if let Some(value) = without_data(&header) {
+            return Ok(value);
+        }
         let numbers = matches!(header.datatype.map(|datatype| datatype.class), Some(Class::Number(_)));
         let skipped = numbers && header.matlab_class != "char" && !is_read(name, &header.dimensions, wanted);
-        if skipped && !header.is_empty {
+        if skipped {
             return Ok(Value::Numbers(Array::unread(header.dimensions)));
         }
         self.value(address, DEEPEST)
@@ -149,11 +152,8 @@ impl<'a> Reader<'a> {
             Class::Number(number) => number,
             Class::Other => return Ok(Value::Other("data that are no real numbers")),
         };
-        if header.is_empty {
-            return Ok(Value::Numbers(Array {
-                dimensions: vec![0],
-                numbers: Vec::new(),
-            }));
+        if let Some(value) = without_data(&header) {
+            return Ok(value);
         }
         let numbers = self.numbers(&header, number)?;
         if header.matlab_class == "char" {
@@ -257,6 +257,23 @@ impl<'a> Reader<'a> {
             }
         }
         Ok(leaves)
+    }
+}
+
+/// The value of a dataset whose elements are not read: it has none, was never written, or is packed in an unknown way.
+fn without_data(header: &Header) -> Option<Value> {
+    let numbers = matches!(header.datatype?.class, Class::Number(_));
+    let unwritten = matches!(
+        header.layout,
+        Some(Layout::Contiguous(UNDEFINED, _) | Layout::Chunked(UNDEFINED, _))
+    );
+    if numbers && (header.is_empty || header.dimensions.contains(&0)) {
+        return Some(Value::Numbers(Array::unread(vec![0])));
+    }
+    match storage::is_unpacked(header) {
+        _ if numbers && unwritten => Some(Value::Other("data that were never written")),
+        false => Some(Value::Other("data packed by another filter than Deflate")),
+        true => None,
     }
 }
 

@@ -1,11 +1,11 @@
-//! Channels from variables: structures from Testlab, captures from dSPACE, and plain arrays.
+//! Channels from variables: structures from Testlab, captures from dSPACE, plain arrays, and structures of these.
 
 use crate::error::{Fault, Place, Read};
 use crate::find::Wanted;
 use crate::signal::{Recording, Scalar, Signal, Source, TimeBase, Value as Single, evenly};
 use crate::units::{in_seconds, is_time, seconds};
 
-use super::value::{Array, Value, Variable};
+use super::value::{Array, Fields, Value, Variable};
 
 /// The channels of a file.
 pub(super) fn recording(format: &str, variables: Vec<Variable>, wanted: &Wanted) -> Read<Recording> {
@@ -34,16 +34,58 @@ pub(super) fn recording(format: &str, variables: Vec<Variable>, wanted: &Wanted)
                     value: Single::Text(text),
                     place,
                 }),
-                Value::Structs(_) => {
-                    recording.pass_over(name, place, "a structure without a time history that is known")
-                }
+                Value::Structs(elements) => structure(&mut recording, &name, elements, &place, wanted)?,
                 Value::Cells(_) => recording.pass_over(name, place, "a cell array"),
                 Value::Other(what) => recording.pass_over(name, place, what),
             }
         }
     }
-    plain(&mut recording, arrays, wanted)?;
+    plain(&mut recording, "", arrays, wanted)?;
     Ok(recording)
+}
+
+/// Arrays among the fields of a structure, beside one of times; `signals` of Simulink, each with `values` and a `label`, are
+/// arrays as well. Structures in a structure are looked at in the same way.
+fn structure(
+    recording: &mut Recording,
+    variable: &str,
+    elements: Vec<Fields>,
+    place: &Place,
+    wanted: &Wanted,
+) -> Read<()> {
+    let mut arrays = Vec::new();
+    let is_one = elements.len() == 1;
+    let before = recording.signals.len();
+    for (name, value) in elements.into_iter().flatten().filter(|_| is_one) {
+        match value {
+            Value::Numbers(array) if array.len() > 1 => arrays.push((name, array, place.clone())),
+            Value::Structs(of_signals) if name == "signals" => arrays.extend(simulink(of_signals, place)),
+            Value::Structs(inner) => structure(recording, &format!("{variable}.{name}"), inner, place, wanted)?,
+            _ => {}
+        }
+    }
+    if arrays.iter().any(|(name, array, _)| array.is_vector() && is_time(name)) {
+        return plain(recording, variable, arrays, wanted);
+    }
+    if recording.signals.len() == before {
+        let why = "a structure without a vector of times (`time` or `t`) among its fields";
+        recording.pass_over(variable, place.clone(), why);
+    }
+    Ok(())
+}
+
+/// The arrays of Simulink's signals. One without a label is named by its number, from 1.
+fn simulink(signals: Vec<Fields>, place: &Place) -> Vec<(String, Array, Place)> {
+    let array = |(at, fields): (usize, Fields)| {
+        let mut signal = Value::Structs(vec![fields]);
+        let label = signal.text(&["label"]).filter(|label| !label.trim().is_empty());
+        let name = label.map_or(format!("signals({})", at + 1), |label| label.trim().into());
+        match signal.take("values") {
+            Some(Value::Numbers(array)) if array.len() > 1 => Some((name, array, place.clone())),
+            _ => None,
+        }
+    };
+    signals.into_iter().enumerate().filter_map(array).collect()
 }
 
 fn missing(place: &Place, what: &str, expected: &str) -> Box<Fault> {
@@ -162,7 +204,7 @@ fn times_of(times: &[f64], factor: f64, name: &str, place: &Place) -> Read<TimeB
         Fault::new(
             place.clone(),
             format!("{found} in element {}", at + 1),
-            "times that never fall",
+            "times that never decrease",
             remedy,
         )
         .of(name)
@@ -171,7 +213,7 @@ fn times_of(times: &[f64], factor: f64, name: &str, place: &Place) -> Read<TimeB
 
 /// Vectors and the columns of matrices. A vector with the name of a time channel is the time base of all channels of
 /// its length. If it is as long as the rows of a matrix, the rows are channels.
-fn plain(recording: &mut Recording, arrays: Vec<(String, Array, Place)>, wanted: &Wanted) -> Read<()> {
+fn plain(recording: &mut Recording, group: &str, arrays: Vec<(String, Array, Place)>, wanted: &Wanted) -> Read<()> {
     let mut bases: Vec<(usize, TimeBase)> = Vec::new();
     let mut channels = Vec::new();
     for (name, array, place) in arrays {
@@ -190,7 +232,7 @@ fn plain(recording: &mut Recording, arrays: Vec<(String, Array, Place)>, wanted:
     };
     for (name, array, place) in channels {
         for (name, length, samples) in split(&name, array, &|length| base(length).is_some()) {
-            let samples = if wanted.has("", &name) { samples } else { Vec::new() };
+            let samples = if wanted.has(group, &name) { samples } else { Vec::new() };
             recording.signals.push(Signal {
                 name,
                 unit: String::new(),
@@ -198,7 +240,7 @@ fn plain(recording: &mut Recording, arrays: Vec<(String, Array, Place)>, wanted:
                 samples: samples.into(),
                 labels: Vec::new(),
                 source: Source {
-                    group: String::new(),
+                    group: group.into(),
                     place: place.clone(),
                 },
             });

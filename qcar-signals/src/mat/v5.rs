@@ -9,7 +9,7 @@ use flate2::read::ZlibDecoder;
 
 use crate::bytes::{Bytes, Number, Order, field, text};
 use crate::content::Content;
-use crate::error::{Fault, Place, Read};
+use crate::error::{Fault, Place, Read, whole_before};
 use crate::find::Wanted;
 use crate::limit::Budget;
 
@@ -38,7 +38,8 @@ pub(super) fn variables(file: Bytes, wanted: &Wanted) -> Read<Vec<Variable>> {
         let element = element(&file, at).map_err(|mut fault| {
             let names: Vec<&str> = variables.iter().map(|variable| variable.name.as_str()).collect();
             if !names.is_empty() {
-                fault.found += &format!("; {} variables before it are whole: {}", names.len(), names.join(", "));
+                let whole = whole_before(names.len(), "variable");
+                fault.found += &format!("{whole}: {}", names.join(", "));
             }
             match name_of_packed(&file, at) {
                 Some(name) => fault.of(&name),

@@ -151,11 +151,7 @@ fn group(file: &Bytes, block: &Bytes, at: u32, visited: &mut Visited) -> Read<Gr
     };
     let mut group = Group {
         id: block.u16(16, "a record id")?,
-        name: if name.is_empty() {
-            format!("group at byte {at}")
-        } else {
-            name
-        },
+        name: visited.group(&name),
         place: Place::Byte(at.into()),
         records: block.u32(22, "a number of records")?,
         length: block.u16(20, "the size of a record")?.into(),

@@ -210,22 +210,28 @@ fn group(file: &File, block: &Block, visited: &mut Visited) -> Read<Group> {
     );
     let mut group = Group {
         id: data.u64(0, "a record id")?,
-        name: file.text(block.link(2))?,
+        name: visited.group(&group_name(file, block)?),
         place: block.place(),
         cycles: data.u64(8, "a number of records")?,
         length: data_bytes as usize + invalid_bytes as usize,
         variable_length: data.u16(16, "flags of a channel group")? & 1 != 0,
         channels: Vec::new(),
     };
-    if group.name.is_empty() {
-        group.name = format!("group at byte {}", block.at);
-    }
     let record = Record {
         data_bytes: data_bytes as usize,
         length: group.length,
     };
     add_channels(file, block.link(1), &record, visited, &mut group.channels)?;
     Ok(group)
+}
+
+/// The name of its acquisition, or else its comment, which may be of any length and is left out if it is too long.
+fn group_name(file: &File, block: &Block) -> Read<String> {
+    let name = file.text(block.link(2))?;
+    Ok(match name.is_empty() {
+        true => file.text(block.link(5)).unwrap_or_default(),
+        false => name,
+    })
 }
 
 struct Record {

@@ -95,7 +95,8 @@ pub(super) struct Guess {
 impl Guess {
     /// The sensor, or why no sensor is recognised.
     pub fn of(signal: &Signal, about: &About) -> Result<Guess, &'static str> {
-        let words = words(&signal.full_name());
+        // The channel's own name says more than that of its group.
+        let words = [words(&signal.name), words(&signal.source.group)].concat();
         let stated = quantity_of(&signal.unit);
         if stated.is_none() && !matches!(signal.unit.as_str(), "" | "-" | "1" | "V" | "mV") {
             return Err("its unit is not that of an acceleration, velocity, displacement or force");

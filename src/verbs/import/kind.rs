@@ -26,6 +26,8 @@ pub(super) struct Proposed {
     kind: Kind,
     /// Highest sample rate of its sensors, Hz.
     rate: Option<f64>,
+    /// True if the file states times, evenly spaced or not.
+    timed: bool,
     /// The part of a recording with several runs.
     part: Option<Part>,
 }
@@ -94,7 +96,8 @@ impl PadMotion {
     /// The motion of a channel that is assumed to be that of a pad and has times.
     pub fn of(signal: &Signal, about: &About) -> Option<Self> {
         let guess = Guess::of(signal, about).ok().filter(|guess| guess.drives)?;
-        let (rate, start) = (signal.time.rate()?, signal.time.start()?);
+        // Rounded or late stamps show a sweep as well as even ones.
+        let (rate, start) = (signal.time.mean_rate()?, signal.time.start()?);
         let samples = in_units(signal);
         let swept = |part: Range<usize>| swept(&samples[part], rate, guess.quantity);
         let end = start + samples.len().saturating_sub(1) as f64 / rate;
@@ -120,12 +123,21 @@ pub(super) fn propose(file: &Measured, sensors: &Sensors) -> Vec<Proposed> {
         let known = sensors.known.iter().filter(move |sensor| sensor.guess.drives == drives);
         known.filter_map(|sensor| contents.found(contents.recording.find(&sensor.source).ok()?))
     };
-    let rates = of(true).chain(of(false)).filter_map(|(summary, _)| summary.rate);
-    let rate = rates.reduce(f64::max).map(whole);
+    let mut summaries: Vec<&ChannelSummary> = of(true).chain(of(false)).map(|(summary, _)| summary).collect();
+    if summaries.is_empty() {
+        summaries = contents.channels().map(|(_, summary)| summary).collect();
+    }
+    let rate = summaries
+        .iter()
+        .filter_map(|summary| summary.rate)
+        .reduce(f64::max)
+        .map(whole);
+    let timed = summaries.iter().any(|summary| summary.mean_rate.is_some());
     let proposed = |kind: Kind, part: Option<Part>| Proposed {
         file: file.seen.clone(),
         kind,
         rate,
+        timed,
         part,
     };
     let pad = of(true).next();
@@ -222,6 +234,7 @@ pub(super) fn sections(runs: &[&Proposed]) -> String {
         text += &match run.rate {
             _ if matches!(run.kind, Kind::Curve(..)) => String::new(),
             Some(rate) => format!("sample_rate = {rate:?} # Hz, to which all channels are brought\n"),
+            None if run.timed => "# sample_rate is not given: it follows from the times of the file\n".into(),
             None => "# sample_rate = # Hz; not stated in the file, give yours\n".into(),
         };
     }

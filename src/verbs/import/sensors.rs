@@ -1,6 +1,8 @@
 //! The sensors of the new campaign, each with its channel in the files.
 
-use qcar_runtime::model::About;
+use std::collections::BTreeSet;
+
+use qcar_runtime::model::{About, StateKind};
 
 use super::Measured;
 use super::guess::Guess;
@@ -68,15 +70,31 @@ impl Sensors {
 }
 
 /// The `[[channel]]` sections.
-pub(super) fn sections(sensors: &Sensors) -> String {
+pub(super) fn sections(sensors: &Sensors, about: &About) -> String {
     let mut text = "\n# The sensors, as guessed from names and units of the channels. Check each, above all its sign: z is up, x forward.\n".to_string();
     text.extend(sensors.known.iter().map(section));
-    if !sensors.others.is_empty() {
-        text += "\n# Channels that were not recognised as sensors; add a [[channel]] for those that are.\n";
-    }
+    let Some((first, _)) = sensors.others.first() else {
+        return text;
+    };
+    text += "\n# Channels that were not recognised as sensors:\n";
     let others = sensors.others.iter();
     text.extend(others.map(|(name, why)| format!("# {name:?}: {why}\n")));
-    text
+    text + &form(first, about)
+}
+
+/// A `[[channel]]` to be filled in, as a comment.
+fn form(source: &str, about: &About) -> String {
+    let masses = about.states.iter().filter(|state| state.kind == StateKind::Velocity);
+    let masses: BTreeSet<&str> = masses.map(|state| &*state.location).collect();
+    let roads = about.excitations.iter().filter(|own| own.road).map(|own| &*own.name);
+    let places: Vec<&str> = roads.chain(masses).collect();
+    let place = places.first().copied().unwrap_or("body");
+    format!(
+        "# Those that are sensors need such a section each:\n# [[channel]]\n# name = \"{place}_left_z\" # any\n# location = \"{place}\" # of {}\n\
+         # side = \"left\" # or right, centre\n# axis = \"z\" # or x\n# quantity = \"acceleration\" # or velocity, displacement, force\n\
+         # source = {source:?}\n",
+        places.join(", "),
+    )
 }
 
 fn section(sensor: &Sensor) -> String {

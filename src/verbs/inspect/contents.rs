@@ -223,6 +223,7 @@ mod tests {
                         summary.mean,
                         summary.rms,
                         summary.rate,
+                        summary.mean_rate,
                         summary.start,
                     ];
                     (

@@ -13,6 +13,8 @@ pub(in crate::verbs) struct ChannelSummary {
     pub missing: usize,
     /// Sample rate, Hz; `None` if the samples are not evenly spaced.
     pub rate: Option<f64>,
+    /// Samples per second on average, Hz; `None` without times.
+    pub mean_rate: Option<f64>,
     /// Time of the first sample, s; `None` without times.
     pub start: Option<f64>,
     pub min: Option<f64>,
@@ -35,6 +37,7 @@ impl ChannelSummary {
             samples: summary.samples,
             missing: summary.samples - summary.valid,
             rate: signal.time.rate(),
+            mean_rate: signal.time.mean_rate(),
             start: signal.time.start(),
             min: mean.map(|_| min),
             max: mean.map(|_| max),

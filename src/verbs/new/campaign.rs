@@ -187,7 +187,10 @@ fn of_vehicle(of: &Parameter) -> String {
         Default::Value(value) => Some(value),
         Default::None | Default::Same(_) => None,
     };
-    let hint = if value.is_none() { "; give yours" } else { "" };
+    let hint = match value {
+        Some(_) => "; as in the model, give yours",
+        None => "; give yours",
+    };
     format!("{} # {}, {}{hint}", line(&of.name, value), of.unit, of.doc)
 }
 

@@ -8,6 +8,7 @@ use super::super::mapping;
 use super::super::recorded::{self, Files};
 use super::sensors::Sensor;
 use super::{CURVE, DYNAMIC_CURVE, FORCES};
+use crate::shown::shown;
 use crate::spelling;
 
 /// Context for reading the runs.
@@ -114,19 +115,19 @@ fn sweep(section: &Section<'_>, known: &RunContext<'_>, file: Option<&String>) -
     let sample_rate = sample_rate(section, known, file);
     let (start_frequency, end_frequency, sample_rate) = (start?, end?, sample_rate?);
     if start_frequency >= end_frequency {
-        let expected = format!("above the start at {start_frequency} Hz");
+        let expected = format!("above the start, {}", section.written("start_frequency"));
         section.wrong(
             "end_frequency",
-            format!("{end_frequency} Hz"),
+            section.written("end_frequency"),
             expected,
             "correct the two frequencies",
         );
     }
     if end_frequency >= sample_rate / 2.0 {
-        let expected = format!("below half the sample rate, {} Hz", sample_rate / 2.0);
+        let expected = format!("below half the sample rate, {}", shown(sample_rate / 2.0, "Hz"));
         section.wrong(
             "end_frequency",
-            format!("{end_frequency} Hz"),
+            section.written("end_frequency"),
             expected,
             "correct the frequency or the rate",
         );
@@ -204,10 +205,10 @@ fn time_history(section: &Section<'_>, known: &RunContext<'_>, file: Option<&Str
     {
         section.wrong(
             "band",
-            format!("[{low}, {high}] Hz"),
+            section.written("band"),
             format!(
-                "a band from 0 Hz to below half the sample rate, {} Hz",
-                sample_rate / 2.0
+                "a band from 0 Hz to below half the sample rate, {}",
+                shown(sample_rate / 2.0, "Hz")
             ),
             "correct the band, or leave it out to compare all frequencies",
         );

@@ -9,13 +9,19 @@ use crate::bytes::{Bytes, Number, Order};
 use crate::error::{Fault, Read};
 
 use super::messages::{Header, Layout};
-use super::{Leaf, Reader, too_new};
+use super::{Leaf, Reader};
 
 /// Largest ratio of unpacked to packed size.
 const LARGEST_RATIO: u64 = 1100;
 const DEFLATE: u16 = 1;
 const SHUFFLE: u16 = 2;
 const CHECKSUM: u16 = 3;
+
+/// True if all filters of a dataset are known.
+pub(super) fn is_unpacked(header: &Header) -> bool {
+    let known = [DEFLATE, SHUFFLE, CHECKSUM];
+    header.filters.iter().all(|filter| known.contains(filter))
+}
 
 impl<'a> Reader<'a> {
     /// The numbers of a dataset.
@@ -125,14 +131,8 @@ impl<'a> Reader<'a> {
                     unpacked
                 }
                 SHUFFLE => unshuffled(&bytes, element as usize),
-                CHECKSUM => bytes[..bytes.len().saturating_sub(4)].to_vec(),
-                other => {
-                    return Err(too_new(
-                        &self.file,
-                        leaf.child,
-                        format!("data packed by filter {other}"),
-                    ));
-                }
+                // The other known one is a checksum.
+                _ => bytes[..bytes.len().saturating_sub(4)].to_vec(),
             };
         }
         Ok(bytes)
