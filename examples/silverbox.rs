@@ -8,8 +8,9 @@
 //! The model and its parameters are those of the discovery, without the sensor's delay of some microseconds. The zero
 //! offset of the sensor, which is no parameter of the model, is the mean error of the model over the fitted periods.
 //!
-//! The record is that of T. Wigren and J. Schoukens, "Three free data sets for development and benchmarking in nonlinear
-//! system identification", European Control Conference 2013: columns V1 (taken for N) and V2 (taken for m) at 610.35 Hz.
+//! The record is that of T. Wigren and J. Schoukens, "Three free data sets for development and benchmarking in
+//! nonlinear system identification", European Control Conference 2013: columns V1 (taken for N) and V2 (taken for m) at
+//! 610.35 Hz.
 
 use std::error::Error;
 use std::fs;

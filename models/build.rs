@@ -1,5 +1,5 @@
-//! Compiles every file of `axles/` to a module, and lists them and the files of `effects/` and `laws/`. A new file in any
-//! of these folders needs no other change.
+//! Compiles every file of `axles/` to a module, and lists them and the files of `effects/` and `laws/`. A new file in
+//! any of these folders needs no other change.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};

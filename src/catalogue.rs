@@ -138,7 +138,8 @@ pub fn of_campaign(campaign: &Campaign, model: Option<&str>, wanted: Wanted) -> 
     Ok(model)
 }
 
-/// The results of the compiler for the model of the user, otherwise that of the campaign, with the wanted responses only.
+/// The results of the compiler for the model of the user, otherwise that of the campaign, with the wanted responses
+/// only.
 ///
 /// # Errors
 /// Fails as [`compiled`] does. An unknown name is reported in the campaign if it comes from there.

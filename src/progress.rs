@@ -1,5 +1,5 @@
-//! Progress of work that may take longer than a second: the task and its completed part, on standard error. It is shown on
-//! a terminal only, never in a pipe or a file.
+//! Progress of work that may take longer than a second: the task and its completed part, on standard error. It is shown
+//! on a terminal only, never in a pipe or a file.
 
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;

@@ -1,5 +1,5 @@
-//! Tests of the library and of searches in one program: each program is linked with all that it uses, and one that ends with a long
-//! test leaves other processors idle.
+//! Tests of the library and of searches in one program: each program is linked with all that it uses, and one that ends
+//! with a long test leaves other processors idle.
 
 #[path = "axle_d/main.rs"]
 mod axle_d;

@@ -167,8 +167,8 @@ fn a_top_mount_that_the_model_lacks_is_found() {
     assert_near(&answer, &truth);
 }
 
-/// A light mass on a stiff mount is nearly a spring: it is told from one only once it is fitted to all runs together, which
-/// takes its three parameters more steps than that one.
+/// A light mass on a stiff mount is nearly a spring: it is told from one only once it is fitted to all runs together,
+/// which takes its three parameters more steps than that one.
 #[test]
 fn a_light_top_mount_is_told_from_a_spring_in_series() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -506,7 +506,8 @@ fn two_sensors_of_which_one_is_wrong_are_a_class() {
     assert_eq!(answer["model_file"], Value::Null);
 }
 
-/// A sweep passes its frequencies one after the other, so that what fades while it runs looks like what depends on frequency.
+/// A sweep passes its frequencies one after the other, so that what fades while it runs looks like what depends on
+/// frequency.
 #[test]
 fn a_damper_that_fades_gets_a_law_over_the_run() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -522,8 +523,8 @@ fn a_damper_that_fades_gets_a_law_over_the_run() {
     let learned = &answer["learned"];
     assert_eq!(learned["at"], "damper", "{learned}");
     assert!(learned["explained"].as_f64() > Some(0.8), "{learned}");
-    // Every sweep takes 42.25 s, so a law over seconds and one over the part of the run can say the same. The beginning is left
-    // out: below the body's resonance the damper hardly counts.
+    // Every sweep takes 42.25 s, so a law over seconds and one over the part of the run can say the same. The beginning
+    // is left out: below the body's resonance the damper hardly counts.
     let law = &learned["laws"][0];
     let hidden = |time: f64| 1.0 - 0.4 * time / 42.25;
     let (middle, expected) = match law["name"].as_str() {
@@ -600,7 +601,8 @@ fn answer_to(order: Order) -> Value {
     discover(&campaign, None)
 }
 
-/// Cleat runs alone, whose base fit ends far off with the tyre at its bound: no candidate gains anything to first order there.
+/// Cleat runs alone, whose base fit ends far off with the tyre at its bound: no candidate gains anything to first order
+/// there.
 #[test]
 fn a_mass_is_found_from_the_start_values_where_the_base_fit_is_far_off() {
     let answer = of_matrix(51, "cleats alone: suspended_mass@subframe 18 seed 51");
@@ -610,8 +612,8 @@ fn a_mass_is_found_from_the_start_values_where_the_base_fit_is_far_off() {
     assert!(answer["gap"]["held_out"]["after"].as_f64() < Some(1.1), "{answer}");
 }
 
-/// Every sensor's gain changes by 4 % over the band, with the phase that belongs to it. With curves held to the 1 % of data sheets, a relaxing
-/// bushing was named with certainty.
+/// Every sensor's gain changes by 4 % over the band, with the phase that belongs to it. With curves held to the 1 % of
+/// data sheets, a relaxing bushing was named with certainty.
 #[test]
 fn inaccurate_sensors_are_no_effect_and_a_notice_says_so() {
     let answer = of_matrix(85, "hardware a3 Calibration alone seed 85");
@@ -623,7 +625,8 @@ fn inaccurate_sensors_are_no_effect_and_a_notice_says_so() {
     );
 }
 
-/// The curves of such sensors can imitate much of a drag on the body. It is named, since it is judged with the sensors that it needs.
+/// The curves of such sensors can imitate much of a drag on the body. It is named, since it is judged with the sensors
+/// that it needs.
 #[test]
 fn an_effect_that_inaccurate_sensors_could_imitate_is_found() {
     let answer = of_matrix(82, "hardware drag_to_ground@body seed 82");
@@ -632,16 +635,17 @@ fn an_effect_that_inaccurate_sensors_could_imitate_is_found() {
     assert_eq!(answer["effects"][0]["at"], "body", "{answer}");
 }
 
-/// On hardware with flaws, a learned law has a larger evidence than a relaxing bushing and a hydraulic mount, which explain as much of
-/// the residual. Resampled data do not bear that out, so the two stay the answer. Three sweeps of 20 s show it.
+/// On hardware with flaws, a learned law has a larger evidence than a relaxing bushing and a hydraulic mount, which
+/// explain as much of the residual. Resampled data do not bear that out, so the two stay the answer. Three sweeps of 20
+/// s show it.
 #[test]
 fn a_law_takes_the_place_of_names_only_if_resampled_data_prefer_it() {
     let answer = answer_to(with_three_sweeps(bushing_on_hardware()));
     are_at_the_mount(&answer, "class", &["bushing_relaxation", "hydraulic_mount"]);
 }
 
-/// A model without effects takes the sensors for 16 times as inaccurate as data sheets say, and then predicts the held-out
-/// runs as well as the relaxing bushing. With the same sensors it does not.
+/// A model without effects takes the sensors for 16 times as inaccurate as data sheets say, and then predicts the
+/// held-out runs as well as the relaxing bushing. With the same sensors it does not.
 #[test]
 fn inaccurate_sensors_of_the_base_model_do_not_dismiss_an_effect() {
     let answer = of_matrix(99, "hardware bushing_relaxation@top_mount seed 99");
@@ -672,8 +676,8 @@ fn with_three_sweeps(order: Order) -> Order {
     }
 }
 
-/// The whole campaign too: a law at the same place that explains little more replaces neither of them. The bushing, which is what is hidden,
-/// comes first.
+/// The whole campaign too: a law at the same place that explains little more replaces neither of them. The bushing,
+/// which is what is hidden, comes first.
 #[test]
 fn names_stand_where_a_law_at_their_place_explains_little_more() {
     let answer = answer_to(bushing_on_hardware());
@@ -696,8 +700,8 @@ fn are_at_the_mount(answer: &Value, verdict: &str, expected: &[&str]) {
     assert!(effects.iter().all(|own| own["at"] == "powertrain_mount"), "{answer}");
 }
 
-/// K&C curves reach three times the travel of the sweeps. The rate of this spring is 1.7 times that at rest at the end of the sweeps, and 19
-/// times at the end of the K&C curves.
+/// K&C curves reach three times the travel of the sweeps. The rate of this spring is 1.7 times that at rest at the end
+/// of the sweeps, and 19 times at the end of the K&C curves.
 #[test]
 fn a_law_of_a_spring_reaches_the_travel_of_kc_curves() {
     let answer = of_matrix(61, "sinh_spring@spring 0 seed 61");
@@ -707,7 +711,8 @@ fn a_law_of_a_spring_reaches_the_travel_of_kc_curves() {
     assert!(learned["explained"].as_f64() > Some(0.95), "{learned}");
 }
 
-/// A stop with a check valve damps in one direction of travel: the law of the damper says where it acts, and on which stroke.
+/// A stop with a check valve damps in one direction of travel: the law of the damper says where it acts, and on which
+/// stroke.
 #[test]
 fn a_law_of_the_travel_knows_a_check_valve() {
     let stop = [("gap", 0.006), ("c_per_metre", 600e3)];
@@ -734,8 +739,8 @@ fn a_law_is_learned_between_a_mass_and_the_ground() {
     assert!(learned["explained"].as_f64() > Some(0.8), "{learned}");
 }
 
-/// What a search assumes that no data give decides no answer: with all numbers 30 % more or less, in eight ways in which each two of
-/// them meet in every combination, it stays the same.
+/// What a search assumes that no data give decides no answer: with all numbers 30 % more or less, in eight ways in
+/// which each two of them meet in every combination, it stays the same.
 #[test]
 fn no_answer_hangs_on_a_number() {
     let hidden = [
@@ -778,7 +783,8 @@ fn two_short_sweeps() -> Programme {
     programme
 }
 
-/// The screening design of Plackett and Burman (Biometrika 33, 1946) for seven factors: seven turns of a row, and all of them low.
+/// The screening design of Plackett and Burman (Biometrika 33, 1946) for seven factors: seven turns of a row, and all
+/// of them low.
 fn screening() -> Vec<String> {
     const ROW: [f64; Numbers::NAMES.len()] = [1.3, 1.3, 1.3, 0.7, 1.3, 0.7, 0.7];
     let assumed = |factors: &[f64]| {

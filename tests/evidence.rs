@@ -70,8 +70,8 @@ fn with_friction(folder: &Path) -> PathBuf {
     with_law(folder, "screw_drive", parameters, law)
 }
 
-/// Parameters that are moved side by side give the slopes that each gives alone, to the last bit, through steps that are
-/// halved and states that begin anew.
+/// Parameters that are moved side by side give the slopes that each gives alone, to the last bit, through steps that
+/// are halved and states that begin anew.
 #[test]
 fn slopes_do_not_depend_on_what_else_is_moved() {
     let campaign = campaign("emps");

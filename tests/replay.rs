@@ -214,7 +214,8 @@ fn derivatives_by_initial_states_are_those_of_differences() {
     }
 }
 
-/// A quarter car with the laws that have kinks: dry friction, a digressive and asymmetric damper, a bump stop, a progressive tyre.
+/// A quarter car with the laws that have kinks: dry friction, a digressive and asymmetric damper, a bump stop, a
+/// progressive tyre.
 const WITH_KINKS: &str = "
 axle kinks {
     known param m_body: kg = 400;
@@ -259,8 +260,8 @@ fn rough_road(factor: f64, rate: f64, samples: usize) -> Vec<f64> {
     (0..samples).map(|sample| factor * at(sample)).collect()
 }
 
-/// Derivatives along all parameters, the amplitude of the road and all initial states are those of differences, to the accuracy of
-/// these.
+/// Derivatives along all parameters, the amplitude of the road and all initial states are those of differences, to the
+/// accuracy of these.
 #[test]
 fn derivatives_through_kinks_are_those_of_differences() {
     derivatives_agree(WITH_KINKS, 1, 1e-6, true);
@@ -271,8 +272,8 @@ fn with_stiff_friction() -> String {
     WITH_KINKS.replace("k_dry: N/m = 20e3", "k_dry: N/m = 200e3")
 }
 
-/// Where its state would not decay in a step of the motion, the derivatives are those of shorter steps. So they agree with differences to the
-/// accuracy of the steps.
+/// Where its state would not decay in a step of the motion, the derivatives are those of shorter steps. So they agree
+/// with differences to the accuracy of the steps.
 #[test]
 fn derivatives_of_a_stiff_friction_do_not_grow() {
     derivatives_agree(&with_stiff_friction(), 1, 5e-3, false);
@@ -284,8 +285,8 @@ fn derivatives_of_a_stiff_friction_are_those_of_differences_in_short_steps() {
     derivatives_agree(&with_stiff_friction(), 16, 1e-6, true);
 }
 
-/// Compares derivatives with central differences of whole replays, with states that are measured anew in between. Records have
-/// `times` as many samples a second as steps of a millisecond allow.
+/// Compares derivatives with central differences of whole replays, with states that are measured anew in between.
+/// Records have `times` as many samples a second as steps of a millisecond allow.
 fn derivatives_agree(model: &str, times: usize, within: f64, by_states: bool) {
     const STEP: f64 = 1e-6;
     /// Of the positions, the velocities and the force of friction.

@@ -235,8 +235,8 @@ fn loops_of_several_speeds_tell_friction_from_a_damper() {
     assert!(with.iter().all(|missing| *missing < 1.5), "{with:?}");
 }
 
-/// The largest difference between the derivatives of the forces by all parameters and differences of fourth order: a part of the
-/// spring's force, for a parameter that changes by all of itself.
+/// The largest difference between the derivatives of the forces by all parameters and differences of fourth order: a
+/// part of the spring's force, for a parameter that changes by all of itself.
 fn worst_slope(model: &dyn Model, given: &[(&str, f64)], evidence: &Evidence) -> (f64, String) {
     const PART: f64 = 1e-3;
     let here = values(model, given);
@@ -275,8 +275,8 @@ fn worst_slope(model: &dyn Model, given: &[(&str, f64)], evidence: &Evidence) ->
     worst
 }
 
-/// The derivatives of the forces of a K&C rig agree with differences for a law with memory, a nonlinear spring, and masses
-/// that an inerter couples.
+/// The derivatives of the forces of a K&C rig agree with differences for a law with memory, a nonlinear spring, and
+/// masses that an inerter couples.
 #[test]
 fn slopes_are_what_a_changed_parameter_does() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,5 @@
-//! The ride of all programs: axle_d in z and x at 30 km/h over a cleat of 30 mm, from rest to the last state, at a tolerance of 1e-6.
+//! The ride of all programs: axle_d in z and x at 30 km/h over a cleat of 30 mm, from rest to the last state, at a
+//! tolerance of 1e-6.
 
 use models::axle_d::AxleD;
 use qcar_runtime::model::{LANES, Model, StateKind};

@@ -1,7 +1,8 @@
 //! Chains of masses, to see how the compiler's work grows with their length.
 //!
-//! `cargo run --release -p qcar-dsl --example chain -- 80` prints a chain of 80 masses, with `own` after the number one whose masses,
-//! springs and dampers each have a parameter; without a number it prints how long each stage takes for chains of several lengths.
+//! `cargo run --release -p qcar-dsl --example chain -- 80` prints a chain of 80 masses, with `own` after the number one
+//! whose masses, springs and dampers each have a parameter; without a number it prints how long each stage takes for
+//! chains of several lengths.
 
 use std::time::Instant;
 
@@ -10,8 +11,8 @@ use qcar_dsl::compile::derive;
 use qcar_dsl::show::{Stage, show};
 use qcar_dsl::source::Source;
 
-/// A chain of masses, each on the one below it, the first on a road. Its parameters are those of one member, or each member has
-/// `own` ones.
+/// A chain of masses, each on the one below it, the first on a road. Its parameters are those of one member, or each
+/// member has `own` ones.
 pub fn chain(masses: usize, own: bool) -> String {
     let mark = |place: usize| if own { place.to_string() } else { String::new() };
     let parameter = |mark: String| {

@@ -54,7 +54,8 @@ pub enum Symbol {
     Force(u16),
     /// Gravity of a direction, by its place in `Model::gravities`, m/s².
     Gravity(u16),
-    /// The force of a rolling tyre on its wheel, by the place of its direction in `ContactAbout::axes` of the description, N.
+    /// The force of a rolling tyre on its wheel, by the place of its direction in `ContactAbout::axes` of the
+    /// description, N.
     ContactForce(u16),
     /// The angular frequency ω of a harmonic excitation, rad/s.
     Frequency,

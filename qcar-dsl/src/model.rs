@@ -245,8 +245,8 @@ pub enum Term {
     Damper(Expr),
     /// `b dv/dt`
     Inerter(Expr),
-    /// Any expression in `Symbol::Stretch`, `Symbol::Rate`, `Symbol::Inner` of this link, stretches and rates of others, force inputs
-    /// and parameters.
+    /// Any expression in `Symbol::Stretch`, `Symbol::Rate`, `Symbol::Inner` of this link, stretches and rates of
+    /// others, force inputs and parameters.
     Force(Expr),
 }
 

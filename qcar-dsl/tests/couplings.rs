@@ -1,4 +1,5 @@
-//! Laws of several stretches against the same law written by hand over complex numbers, whose imaginary part is the derivative.
+//! Laws of several stretches against the same law written by hand over complex numbers, whose imaginary part is the
+//! derivative.
 
 use nalgebra::Complex;
 use qcar_dsl::check::Checked;
@@ -165,7 +166,8 @@ fn codes(left: &str, right: &str) -> Vec<Code> {
     errors.map(|own| own.code).collect()
 }
 
-/// Forces that are slopes of one energy, and rates that are resisted together, are passive; all else is to be called active.
+/// Forces that are slopes of one energy, and rates that are resisted together, are passive; all else is to be called
+/// active.
 #[test]
 fn coupled_laws_are_judged_together() {
     let sound = (
@@ -193,7 +195,8 @@ fn coupled_laws_are_judged_together() {
     assert_eq!(codes(pushing.0, pushing.1), [Code::LawGivesEnergy]);
 }
 
-/// A linear model whose laws use other stretches has no symmetric impedance, so that its responses come from its matrices.
+/// A linear model whose laws use other stretches has no symmetric impedance, so that its responses come from its
+/// matrices.
 #[test]
 fn a_coupled_model_is_not_called_linear() {
     let is_linear = |left: &str, right: &str| {

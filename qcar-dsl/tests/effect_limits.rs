@@ -173,7 +173,8 @@ impl Running {
     }
 }
 
-/// Some motion, the same for every name that two models share. A part that an effect has split off moves with its whole.
+/// Some motion, the same for every name that two models share. A part that an effect has split off moves with its
+/// whole.
 fn motion(name: &str) -> f64 {
     let whole = [
         ("z_belt", "z_wheel"),
@@ -439,7 +440,8 @@ fn a_damper_with_play_acts_beyond_the_play_alone() {
 fn lost_motion_moves_the_damper_at_the_wheel_s_speed_once_it_is_taken_up() {
     let model = in_form(&model("axle_b_rigid_tm"), "free_play", "lost_motion", "damper");
     let running = Running::new(&model, &[("gap", 4e-3), ("k_joint", 1e6)]);
-    // The wheel rises: the damper lies behind by half of the play and by what the joint gives under c v, or within the play.
+    // The wheel rises: the damper lies behind by half of the play and by what the joint gives under c v, or within the
+    // play.
     let speed = 0.4;
     for (behind, moves) in [(2e-3 + 1900.0 * speed / 1e6, 1.0), (1e-3, 0.0), (-1e-3, 0.0)] {
         for way in [-1.0, 1.0] {
@@ -596,7 +598,8 @@ fn friction_beside_all_levers_leaves_arms_and_top_mount_alone() {
     }
 }
 
-/// Beside the strut it adds its inertance to wheel and body as they move against each other, whatever the top mount does.
+/// Beside the strut it adds its inertance to wheel and body as they move against each other, whatever the top mount
+/// does.
 #[test]
 fn an_inerter_between_wheel_and_body_leaves_the_top_mount_alone() {
     let base = model("axle_b");

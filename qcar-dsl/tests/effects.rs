@@ -259,9 +259,10 @@ fn the_catalogue_applies_where_it_should() {
 }
 
 /// What a search cannot find beside an effect: the effects, at their places, that the model allows and a model with the
-/// effect refuses in every form. Most replace a term that is gone, or act at the same place in the same way. A mass that is taken
-/// from the body fits before the mass above the other axle, and not after it: at the ends of the ranges, the inertance
-/// between the two would be larger than what is left. Errors of sensors are left out, since they do not change the model.
+/// effect refuses in every form. Most replace a term that is gone, or act at the same place in the same way. A mass
+/// that is taken from the body fits before the mass above the other axle, and not after it: at the ends of the ranges,
+/// the inertance between the two would be larger than what is left. Errors of sensors are left out, since they do not
+/// change the model.
 #[test]
 fn what_each_effect_excludes() {
     let base = model("axle_c");
@@ -532,8 +533,8 @@ fn an_effect_is_sized_by_known_values_and_the_model_takes_them_as_defaults() {
     }
 }
 
-/// Each point of a curve changes some motion, large or small. The shares of the travel at which the points lie are known parameters,
-/// and what a motion must be to reach them differs from model to model.
+/// Each point of a curve changes some motion, large or small. The shares of the travel at which the points lie are
+/// known parameters, and what a motion must be to reach them differs from model to model.
 #[test]
 fn every_point_of_a_curve_is_seen_in_every_model() {
     for name in ["one_mass", "quarter_car", "axle_a", "axle_d", "axle_e"] {

@@ -199,7 +199,8 @@ fn a_model_with_forces_of_every_kind_reads_back_and_shows_them() {
     }
 }
 
-/// A rigid body on two springs, seen at a point ahead of its centre: heave and pitch by hand, the point's equation from both.
+/// A rigid body on two springs, seen at a point ahead of its centre: heave and pitch by hand, the point's equation from
+/// both.
 #[test]
 fn a_point_moves_as_its_coordinates_do() {
     let model = "axle body {

@@ -109,7 +109,8 @@ fn judge(model: Checked, p: &[f64], omega: &[f64], floor: f64) {
     judge_some(model, p, omega, floor, 0.0);
 }
 
-/// The same where outputs that are not shown may respond by as much as `unseen`, so that rounding errors are of its size.
+/// The same where outputs that are not shown may respond by as much as `unseen`, so that rounding errors are of its
+/// size.
 fn judge_some(model: Checked, p: &[f64], omega: &[f64], floor: f64, unseen: f64) {
     let evaluator = Evaluator::new(&derive(model.clone()));
     let reference = Reference::new(&model, p);
@@ -167,8 +168,8 @@ proptest! {
 proptest! {
     #![proptest_config(common::cases(4))]
 
-    /// The rounding errors of the dense reference grow with the number of members, which is ten times that of small models:
-    /// so does what is nothing but such errors.
+    /// The rounding errors of the dense reference grow with the number of members, which is ten times that of small
+    /// models: so does what is nothing but such errors.
     #[test]
     fn large_models_respond_as_their_matrices_say(plan in large_plan(), omega in 0.1..3.0f64) {
         let (model, p) = plan.build_with_groups();

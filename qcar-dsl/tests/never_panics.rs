@@ -1,4 +1,5 @@
-//! No text makes the compiler panic: neither words at random, nor models and effects with parts cut out, doubled or swapped.
+//! No text makes the compiler panic: neither words at random, nor models and effects with parts cut out, doubled or
+//! swapped.
 
 #[path = "../../fuzz/bodies/effect.rs"]
 mod effect;

@@ -1,5 +1,5 @@
-//! What the compiler makes of a chain of masses grows no faster than its length to the power of 1.2. Expressions, operations and bytes are
-//! counted: no clock is asked.
+//! What the compiler makes of a chain of masses grows no faster than its length to the power of 1.2. Expressions,
+//! operations and bytes are counted: no clock is asked.
 
 #[path = "../examples/chain.rs"]
 #[allow(dead_code, reason = "the example measures times")]
@@ -61,8 +61,8 @@ fn a_chain_of_equal_members_grows_as_its_length() {
     grows_as_the_length(false, Wanted::Jacobian, &Stage::ALL);
 }
 
-/// With parameters of each member, a Jacobian of every output has entries as the square of the length. Where none is wanted, nothing
-/// grows so.
+/// With parameters of each member, a Jacobian of every output has entries as the square of the length. Where none is
+/// wanted, nothing grows so.
 #[test]
 fn a_chain_of_many_parameters_grows_as_its_length_without_its_jacobian() {
     let shown = Stage::ALL.into_iter().filter(|stage| *stage != Stage::Rust);
@@ -116,7 +116,8 @@ fn unseen(text: String) -> Vec<(Vec<String>, usize)> {
     groups.map(|group| (group.parameters.clone(), group.seen)).collect()
 }
 
-/// Whatever is found out from few responses: a product in any link, however far away, and a scale that is common to all forces.
+/// Whatever is found out from few responses: a product in any link, however far away, and a scale that is common to all
+/// forces.
 #[test]
 fn what_a_chain_does_not_show_is_found_at_any_length() {
     for masses in [2, 10, 40] {

@@ -1,8 +1,8 @@
 //! Instructions of x86-64 as bytes.
 //!
-//! Intel 64 and IA-32 Architectures Software Developer's Manual, volume 2: chapter 2 has the forms of an instruction (ModRM, SIB, REX,
-//! VEX and EVEX), chapters 3 to 5 its opcode. One or four numbers need AVX, eight AVX-512 with its part DQ. No multiplication is fused
-//! with an addition.
+//! Intel 64 and IA-32 Architectures Software Developer's Manual, volume 2: chapter 2 has the forms of an instruction
+//! (ModRM, SIB, REX, VEX and EVEX), chapters 3 to 5 its opcode. One or four numbers need AVX, eight AVX-512 with its
+//! part DQ. No multiplication is fused with an addition.
 
 /// A register for addresses, by number.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

@@ -75,8 +75,8 @@ impl Code {
         }
         let into = &mut into[..self.results];
         let [a, b, c, d] = parts;
-        // SAFETY: `memory` holds a function of this signature, since `translate` wrote it so. It reads the entries of the parts below
-        // those lengths, the numbers, and its own stack, and writes as many results as there are.
+        // SAFETY: `memory` holds a function of this signature, since `translate` wrote it so. It reads the entries of
+        // the parts below those lengths, the numbers, and its own stack, and writes as many results as there are.
         unsafe {
             let code: Entered = std::mem::transmute(self.memory.as_ptr());
             code(a, b, c, d, into.as_mut_ptr(), self.numbers.as_ptr());
@@ -129,8 +129,9 @@ impl Code {
             self.results
         );
         let run = |from: usize, to: usize| {
-            // SAFETY: as in `run`, of the shared part. The code reads and writes the points from `from` on by groups of `width` while
-            // their first is below `to`, and each row has `points` of them, which is at least `to + width - 1`.
+            // SAFETY: as in `run`, of the shared part. The code reads and writes the points from `from` on by groups of
+            // `width` while their first is below `to`, and each row has `points` of them, which is at least `to + width
+            // - 1`.
             unsafe {
                 let code: Swept = std::mem::transmute(self.memory.as_ptr());
                 let (from, to, numbers) = (NUMBER * from, NUMBER * to, self.numbers.as_ptr());

@@ -114,7 +114,8 @@ pub trait Model: Send + Sync {
     /// output, a row with the imaginary part of each, and, `with_jacobian`, the same for the parameter Jacobian. The
     /// bits are the same.
     ///
-    /// The rows of all lines of eight sets seldom fit into a cache: it pays to ask for some lines at a time, and to use them at once.
+    /// The rows of all lines of eight sets seldom fit into a cache: it pays to ask for some lines at a time, and to use
+    /// them at once.
     fn response_sets(
         &self,
         excitation: usize,

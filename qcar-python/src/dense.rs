@@ -1,5 +1,5 @@
-//! Rates, outputs, matrices and their parameter Jacobians for many parameter sets: computed in parallel, set by set. Nonzeros are put
-//! into dense arrays.
+//! Rates, outputs, matrices and their parameter Jacobians for many parameter sets: computed in parallel, set by set.
+//! Nonzeros are put into dense arrays.
 
 use ndarray::{Array2, Array3, Array4, ArrayView2};
 use qcar::stopping;

@@ -1,5 +1,5 @@
-//! The extension module of the Python package `qcar`: arrays in, arrays out. Names, docstrings and shapes that a user sees are in
-//! `python/qcar`.
+//! The extension module of the Python package `qcar`: arrays in, arrays out. Names, docstrings and shapes that a user
+//! sees are in `python/qcar`.
 
 // Exceptions.
 mod errors;

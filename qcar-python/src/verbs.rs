@@ -36,7 +36,8 @@ type RatioOfRun<'py> = (
 
 type Correlations = Vec<(String, String, f64)>;
 
-/// JSON, ratios (run, role, channel, fitted, frequency, measured, model, relative variance), correlations, and a figure.
+/// JSON, ratios (run, role, channel, fitted, frequency, measured, model, relative variance), correlations, and a
+/// figure.
 type FitOfCampaign<'py> = (String, Vec<RatioOfRun<'py>>, Correlations, String);
 
 /// A model fitted to the runs of a campaign.

@@ -10,8 +10,8 @@ pub type OnProgress<'a> = &'a (dyn Fn(usize, usize) + Sync);
 /// Ignores the progress.
 pub const NO_PROGRESS: OnProgress<'static> = &|_, _| ();
 
-/// Does `work` on all items in parallel and reports the progress at the start and after each item. The results are in the
-/// order of the items.
+/// Does `work` on all items in parallel and reports the progress at the start and after each item. The results are in
+/// the order of the items.
 pub fn map<T: Sync, U: Send>(items: &[T], on_progress: OnProgress<'_>, work: impl Fn(&T) -> U + Sync + Send) -> Vec<U> {
     map_with(items, on_progress, || (), |(), item| work(item))
 }

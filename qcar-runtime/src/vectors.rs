@@ -39,8 +39,8 @@ pub(crate) fn widest<L: Loops>(loops: L) -> L::Result {
     loops.run()
 }
 
-/// Runs loops over the [lanes](crate::model::LANES) of several systems, which a vector of AVX-512 holds all; without it, as
-/// [`widest`]. The bits are the same.
+/// Runs loops over the [lanes](crate::model::LANES) of several systems, which a vector of AVX-512 holds all; without
+/// it, as [`widest`]. The bits are the same.
 #[inline]
 pub(crate) fn over_lanes<L: Loops>(loops: L) -> L::Result {
     #[cfg(target_arch = "x86_64")]

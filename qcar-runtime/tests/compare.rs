@@ -33,7 +33,8 @@ fn a_delayed_copy_has_no_error() {
     );
 }
 
-/// An obstacle throws the wheel up at either end: a simulation whose second peak is the higher one is not taken to be late.
+/// An obstacle throws the wheel up at either end: a simulation whose second peak is the higher one is not taken to be
+/// late.
 #[test]
 fn of_two_peaks_those_that_are_the_same_are_aligned() {
     let two = |heights: [f64; 2], onset: f64| -> Vec<f64> {

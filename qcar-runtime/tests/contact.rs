@@ -483,8 +483,8 @@ fn radii_agree_with_a_sum_over_many_rays() {
     }
 }
 
-/// Distance to the ground along a ray, found by walking, with short steps where a long one would lead below it; the radius
-/// where there is none nearer.
+/// Distance to the ground along a ray, found by walking, with short steps where a long one would lead below it; the
+/// radius where there is none nearer.
 fn first_ground(road: &Road, [x, z]: [f64; 2], angle: f64) -> f64 {
     let mut distance = 0.2;
     for step in [1e-4, 1e-5] {

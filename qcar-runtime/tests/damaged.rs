@@ -1,5 +1,5 @@
-//! Whatever the files of a campaign hold, they are read or refused: what the fuzz targets of campaigns run without end, some
-//! thousand times here.
+//! Whatever the files of a campaign hold, they are read or refused: what the fuzz targets of campaigns run without end,
+//! some thousand times here.
 
 #[path = "../../fuzz/bodies/campaign.rs"]
 mod campaign;

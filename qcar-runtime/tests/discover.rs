@@ -185,8 +185,8 @@ fn a_gain_beyond_calibration_is_told_when_suspected() {
     assert!(refit.chi2 < base.chi2 - 10.0, "{} {}", refit.chi2, base.chi2);
 }
 
-/// An accelerometer whose gain rises by 4 % below 3 Hz and falls by 5 % about 14 Hz, with the phase of such filters: up to
-/// 1.2 degrees.
+/// An accelerometer whose gain rises by 4 % below 3 Hz and falls by 5 % about 14 Hz, with the phase of such filters: up
+/// to 1.2 degrees.
 #[test]
 fn a_smooth_calibration_curve_is_no_residual() {
     let shelf = |f: f64, corner: f64, height: f64| {

@@ -32,8 +32,8 @@ const RUNS: [(&str, &str, f64, f64); 3] = [
 /// Parameters of the suspension that a fit looks for.
 const FREE: [&str; 6] = ["k_tire", "c_tire", "k_z", "c_z", "k_x", "c_x"];
 
-/// What is wrong with the recorder: its clock is late by so many samples, the wheel's sensor reads so much too high, and
-/// its sensors of both axes are late by so many samples more.
+/// What is wrong with the recorder: its clock is late by so many samples, the wheel's sensor reads so much too high,
+/// and its sensors of both axes are late by so many samples more.
 #[derive(Clone, Copy)]
 struct Recorder {
     late: usize,

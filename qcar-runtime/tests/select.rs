@@ -1,4 +1,5 @@
-//! What a search answers on evidence in closed form, with a catalogue of masses on mounts that are told apart by their ranges.
+//! What a search answers on evidence in closed form, with a catalogue of masses on mounts that are told apart by their
+//! ranges.
 
 use nalgebra::Complex;
 use qcar_runtime::campaign::{Axis, Role};
@@ -254,7 +255,8 @@ fn a_law_takes_the_place_of_a_class_only_where_it_explains_more_than_its_members
     assert!(class.learned.is_none());
 }
 
-/// A mount that is too stiff explains the mass in part. Runs that judge and show no gap confirm nothing, and the law explains more.
+/// A mount that is too stiff explains the mass in part. Runs that judge and show no gap confirm nothing, and the law
+/// explains more.
 #[test]
 fn a_law_takes_the_place_of_a_name_that_no_run_confirms() {
     let mut evidence = evidence(0.0, &LEVELS);

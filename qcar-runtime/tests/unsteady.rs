@@ -226,8 +226,8 @@ fn unsteady_of(model: &Strut, evidence: &Evidence) -> Vec<Vec<Complex<f64>>> {
     unsteady(model, &values, &TestConditions::default(), evidence, Role::Fit).expect("the model has the sensors")
 }
 
-/// What sweeps of a linear axle show, whose pad is seen by a sensor that may be of another quantity and read something at
-/// rest.
+/// What sweeps of a linear axle show, whose pad is seen by a sensor that may be of another quantity and read something
+/// at rest.
 fn of_linear_axle(quantity: Quantity, at_rest: f64) -> (&'static Strut, Evidence) {
     let (plain, mut evidence) = (&LINEAR.0, LINEAR.1.clone());
     for run in &mut evidence.runs {

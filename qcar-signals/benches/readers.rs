@@ -1,7 +1,8 @@
-//! Measured files of 64 MB of samples in memory: read into channels, of which every sample is then requested once as a double.
+//! Measured files of 64 MB of samples in memory: read into channels, of which every sample is then requested once as a
+//! double.
 //!
-//! The rate is that of the samples as the file stores them (two bytes for short integers, eight for doubles and for numbers of a text),
-//! without times, names and padding.
+//! The rate is that of the samples as the file stores them (two bytes for short integers, eight for doubles and for
+//! numbers of a text), without times, names and padding.
 
 #[path = "../../tests/rig_files/writers/mod.rs"]
 #[expect(dead_code, reason = "texts and workbooks are written by tests alone")]

@@ -5,8 +5,8 @@ pub(crate) const DAY: f64 = 86_400.0;
 /// Days before 1 January 2000, counted from 1 March of the year 0.
 const BEFORE_2000: u32 = 730_425;
 
-/// Seconds in a text such as `12:30:05.25`, `2026-11-26 12:30:05`, `26.11.2026 12:30:05,25` or `2026-11-26`: since midnight,
-/// or with a date since the year 2000. `None` for anything else, such as a day of an unknown month in
+/// Seconds in a text such as `12:30:05.25`, `2026-11-26 12:30:05`, `26.11.2026 12:30:05,25` or `2026-11-26`: since
+/// midnight, or with a date since the year 2000. `None` for anything else, such as a day of an unknown month in
 /// `11/26/2026`.
 pub(crate) fn seconds(text: &str) -> Option<f64> {
     let text = text.trim().trim_end_matches('Z');

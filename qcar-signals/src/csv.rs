@@ -1,5 +1,5 @@
-//! Text tables: comma, semicolon, tab, bar or spaces between columns, decimal point or comma, with or without a row of units,
-//! in UTF-8, UTF-16 or Windows-1252.
+//! Text tables: comma, semicolon, tab, bar or spaces between columns, decimal point or comma, with or without a row of
+//! units, in UTF-8, UTF-16 or Windows-1252.
 
 mod plain;
 mod rows;

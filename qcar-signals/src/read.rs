@@ -19,9 +19,9 @@ const GZIP: &[u8] = b"\x1f\x8b";
 
 /// Reads a file of any format of this crate, also compressed by gzip. The content determines the format, not the name.
 ///
-/// Memory: eight bytes for each sample, two for RPC III; for a packed or text file also its unpacked size, up to
-/// the limit of [`limit::of_unpacked`](crate::limit::of_unpacked). Declared sizes are checked against the existing bytes before memory is
-/// allocated.
+/// Memory: eight bytes for each sample, two for RPC III; for a packed or text file also its unpacked size, up to the
+/// limit of [`limit::of_unpacked`](crate::limit::of_unpacked). Declared sizes are checked against the existing bytes
+/// before memory is allocated.
 ///
 /// # Errors
 /// Fails if the file cannot be opened, has an unknown format, is cut off, damaged, packed twice or unpacks to

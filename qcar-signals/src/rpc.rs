@@ -1,5 +1,5 @@
-//! RPC III, the format of MTS for drive and response files: parameters of 32 and 96 characters in blocks of 512 bytes, then
-//! groups of frames.
+//! RPC III, the format of MTS for drive and response files: parameters of 32 and 96 characters in blocks of 512 bytes,
+//! then groups of frames.
 //!
 //! A group contains all samples of the first channel, then all of the second and so on (demultiplexed). If `TIME_TYPE`
 //! begins with `MULT`, it contains the first samples of all channels, then the second ones (multiplexed). The last

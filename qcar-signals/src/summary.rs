@@ -37,7 +37,8 @@ impl Summary {
         }
     }
 
-    /// Adds the next samples. Sums are taken in the order of the samples, so they do not depend on how these are divided into calls.
+    /// Adds the next samples. Sums are taken in the order of the samples, so they do not depend on how these are
+    /// divided into calls.
     pub(crate) fn add(&mut self, mut samples: impl ExactSizeIterator<Item = f64>) {
         while samples.len() > 0 {
             let within = self.samples % self.part;

@@ -1,5 +1,5 @@
-//! TDMS, the format of LabVIEW: segments, each with a list of objects and their raw data, in either byte order, interleaved or
-//! not, or as DAQmx writes them.
+//! TDMS, the format of LabVIEW: segments, each with a list of objects and their raw data, in either byte order,
+//! interleaved or not, or as DAQmx writes them.
 //!
 //! Source: "TDMS File Format Internal Structure" of National Instruments.
 

@@ -43,8 +43,8 @@ pub(crate) fn bare(text: &str) -> &str {
     inner.unwrap_or(text).trim()
 }
 
-/// A heading such as `Travel [mm]`, `Travel (mm)`, `Travel / mm` or `Travel in mm` as name and unit. Square brackets always
-/// contain a unit, the other forms only if their content is one.
+/// A heading such as `Travel [mm]`, `Travel (mm)`, `Travel / mm` or `Travel in mm` as name and unit. Square brackets
+/// always contain a unit, the other forms only if their content is one.
 pub(crate) fn name_and_unit(heading: &str) -> (String, String) {
     let heading = heading.trim();
     let bracketed = |open: char, close: char| {

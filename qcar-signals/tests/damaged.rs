@@ -27,8 +27,8 @@ fn sample(name: &str) -> Vec<u8> {
     fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/samples").join(name)).unwrap()
 }
 
-/// Bytes that a reader may hold for each byte of a file of a few hundred kilobytes, and for any file. Rows of a table of text
-/// take more than they are long while its head is looked at.
+/// Bytes that a reader may hold for each byte of a file of a few hundred kilobytes, and for any file. Rows of a table
+/// of text take more than they are long while its head is looked at.
 const PER_BYTE: usize = 64;
 const ALWAYS: usize = 48 << 20;
 

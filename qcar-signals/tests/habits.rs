@@ -1,5 +1,5 @@
-//! Habits of other programs: structures of MATLAB, stamps of loggers, texts in place of numbers. The samples hold 50 values at
-//! 500 Hz: `front` counts in steps of 0.25, `rear` of -0.5.
+//! Habits of other programs: structures of MATLAB, stamps of loggers, texts in place of numbers. The samples hold 50
+//! values at 500 Hz: `front` counts in steps of 0.25, `rear` of -0.5.
 
 use std::path::Path;
 

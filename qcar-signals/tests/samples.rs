@@ -1,7 +1,7 @@
 //! Every sample file is read to what other programs read in it, and every trap is refused for its reason.
 //!
-//! `samples/README.md` says where the files come from. Those that are not in the repository are read from the folder that
-//! `QCAR_FORMAT_SAMPLES` names.
+//! `samples/README.md` says where the files come from. Those that are not in the repository are read from the folder
+//! that `QCAR_FORMAT_SAMPLES` names.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -483,7 +483,8 @@ fn a_cell_that_is_no_number_is_named() {
     }
 }
 
-/// A file of the latest version of HDF5, made by h5py with these formulas: in one piece, and in chunks with each kind of index.
+/// A file of the latest version of HDF5, made by h5py with these formulas: in one piece, and in chunks with each kind
+/// of index.
 #[test]
 fn hdf5_as_newer_libraries_write_it_is_read() {
     let recording = read(&sample("mat/h5py_v114.mat").unwrap()).unwrap_or_else(|error| panic!("{error}"));

@@ -47,9 +47,9 @@ mod unfinished;
 
 /// Find the effect that a campaign shows and its model lacks
 ///
-/// Fits the model to the runs with the role `fit`, examines the residuals in standard deviations, tries the effects
-/// of the catalogue at every place where they apply, and checks them on the `held_out` runs.
-/// The verdict is `none` if noise explains the residuals, `found`, `class` if several effects explain them equally well, or `unknown`.
+/// Fits the model to the runs with the role `fit`, examines the residuals in standard deviations, tries the effects of
+/// the catalogue at every place where they apply, and checks them on the `held_out` runs. The verdict is `none` if
+/// noise explains the residuals, `found`, `class` if several effects explain them equally well, or `unknown`.
 #[derive(Args)]
 #[command(after_help = "Example:\n  qcar discover models/campaigns/axle_a_rig --out results")]
 pub struct Arguments {
@@ -58,7 +58,8 @@ pub struct Arguments {
     /// Start from this model, by name or path, instead of the campaign's
     #[arg(long, add = ArgValueCompleter::new(completion::models))]
     model: Option<String>,
-    /// Write the patched model file, parameters.toml, discovery.json and gap.svg into this folder; after Ctrl-C, write what is known so far into its subfolder `unfinished`
+    /// Write the patched model file, parameters.toml, discovery.json and gap.svg into this folder; after Ctrl-C, write
+    /// what is known so far into its subfolder `unfinished`
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
     /// Multiply assumptions of the search, to see their influence on the answer
@@ -163,7 +164,8 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     })
 }
 
-/// Searches for the effects that the model of the campaign in a folder lacks. The result has the notices of the campaign.
+/// Searches for the effects that the model of the campaign in a folder lacks. The result has the notices of the
+/// campaign.
 ///
 /// # Errors
 /// Fails if the campaign cannot be read or has no data for the model, or if the model does not compile.
@@ -233,8 +235,8 @@ pub(crate) fn answer(
     })
 }
 
-/// A sentence for each sensor of a record without an offset of its own, because a parameter or state of the model acts as
-/// one.
+/// A sentence for each sensor of a record without an offset of its own, because a parameter or state of the model acts
+/// as one.
 fn offsets_of_the_model(discovery: &Discovery) -> impl Iterator<Item = String> {
     let without = &discovery.after.refit.nuisance.without_offset;
     without.iter().map(|(sensor, own)| {
@@ -242,8 +244,8 @@ fn offsets_of_the_model(discovery: &Discovery) -> impl Iterator<Item = String> {
     })
 }
 
-/// Parameters of the campaign, and further parameters of the model that may be estimated, such as those of an effect that
-/// it already has.
+/// Parameters of the campaign, and further parameters of the model that may be estimated, such as those of an effect
+/// that it already has.
 ///
 /// # Errors
 /// Fails as [`bound`] does.
@@ -267,8 +269,8 @@ fn extended(bench: &Bench, finding: &Finding) -> Option<Patched> {
     bench.patched(&finding.effect, &finding.at, finding.form.as_deref())
 }
 
-/// The units of the parameters of each finding. Certain findings are added one after another; alternatives of a class are
-/// each added to the model with the certain ones.
+/// The units of the parameters of each finding. Certain findings are added one after another; alternatives of a class
+/// are each added to the model with the certain ones.
 fn units(mut bench: Bench, discovery: &Discovery) -> Vec<BTreeMap<String, String>> {
     let mut units = Vec::new();
     let found = discovery.certain_and_alternatives().0.len();

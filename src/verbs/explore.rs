@@ -42,10 +42,10 @@ use vary::Vary;
 
 /// Compute metrics of many parameter sets over the same cleats, as a table
 ///
-/// A row is a parameter set and a ride: its number, the varied parameters, and the metrics. Rows are in the order of the design
-/// and do not depend on the number of threads. An interrupted command resumes when it is repeated: rows are in FILE.part until
-/// all are complete, and FILE.design.json describes them.
-/// Rides need the vehicle data r_tire, static_tire_def and static_tire_load, in the file or campaign of --params.
+/// A row is a parameter set and a ride: its number, the varied parameters, and the metrics. Rows are in the order of
+/// the design and do not depend on the number of threads. An interrupted command resumes when it is repeated: rows are
+/// in FILE.part until all are complete, and FILE.design.json describes them. Rides need the vehicle data r_tire,
+/// static_tire_def and static_tire_load, in the file or campaign of --params.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar explore quarter_car --vary k_tire=180..220N/mm --vary m_wheel=-10%..10% --count 1000 --out sets.csv\n  qcar explore axle_a --params models/campaigns/axle_a_rig --vary k_tire=-10%..10% --vary c_wheel_z=-30%..30% --count 16 --rides 20mm@30km/h,standard --out rides.parquet\n  qcar explore axle_a --params models/campaigns/axle_a_rig --vary k_tire=-10%..10% --design grid --count 5 --metrics modes --part 2/4 --out part-2.csv"

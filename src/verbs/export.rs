@@ -24,8 +24,8 @@ mod on_tyre;
 
 /// Write a model with its values for other tools: C99, FMU, MATLAB, Modelica, JavaScript, tables
 ///
-/// Every parameter starts with the given value, and can be changed later where the tool allows it. Existing files are never
-/// overwritten.
+/// Every parameter starts with the given value, and can be changed later where the tool allows it. Existing files are
+/// never overwritten.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar export quarter_car --as c --out quarter_car.c\n  qcar export axle_a --params models/campaigns/axle_a_rig --as fmu --out axle_a.fmu\n  qcar export axle_a --params models/campaigns/axle_a_rig --as fmu --road C@80km/h:10s --out axle_a_on_road.fmu"
@@ -39,8 +39,8 @@ pub struct Arguments {
     /// Version of the Functional Mock-up Interface of an FMU; default: 2
     #[arg(long, value_enum, value_name = "VERSION")]
     fmi: Option<Fmi>,
-    /// For an FMU: roll over this road on the tyre of the vehicle in --params; a class of ISO 8608 such as C@80km/h, or a profile such as
-    /// cleat.csv@30km/h or road.crg#v=0.5@50km/h. Without it the effective road is an input
+    /// For an FMU: roll over this road on the tyre of the vehicle in --params; a class of ISO 8608 such as C@80km/h, or
+    /// a profile such as cleat.csv@30km/h or road.crg#v=0.5@50km/h. Without it the effective road is an input
     #[arg(long, value_name = "ROAD@SPEED")]
     road: Option<roads::RequestedRoad>,
     /// The file to write, with the ending of its kind

@@ -25,9 +25,10 @@ mod kind;
 
 /// Create a campaign from measured files
 ///
-/// Lists the channels of each file, proposes from name and unit which sensor of the model each is, and recognises the kind of run;
-/// for a sweep it also finds the frequencies and the velocity of the pad. A recording with several sweeps, separated by 1.5 s of rest, is split into
-/// runs. The new folder has a campaign.toml that says what to fill in. The files stay where they are.
+/// Lists the channels of each file, proposes from name and unit which sensor of the model each is, and recognises the
+/// kind of run; for a sweep it also finds the frequencies and the velocity of the pad. A recording with several sweeps,
+/// separated by 1.5 s of rest, is split into runs. The new folder has a campaign.toml that says what to fill in. The
+/// files stay where they are.
 #[derive(Args)]
 #[command(
     after_help = "Example:\n  qcar import models/campaigns/axle_a_rig/rig/sweep_025.csv.gz models/campaigns/axle_a_rig/rig/sweep_100.csv.gz --out imported --model axle_a"

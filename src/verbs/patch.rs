@@ -16,9 +16,9 @@ use crate::parameters;
 
 /// Add an effect to a model and write the new model file
 ///
-/// The new file contains the whole model, with its options resolved, and compiles like any other. Ranges and start values that
-/// depend on the model's own parameters are evaluated at the given values, at the defaults, or else in the middle of the
-/// ranges.
+/// The new file contains the whole model, with its options resolved, and compiles like any other. Ranges and start
+/// values that depend on the model's own parameters are evaluated at the given values, at the defaults, or else in the
+/// middle of the ranges.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar patch axle_c coulomb_friction --at damper\n  qcar patch axle_a bushing_relaxation --at top_mount --params models/campaigns/axle_a_rig --out softer.axle"

@@ -112,7 +112,8 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     })
 }
 
-/// Candidates for a fit to transmissibilities. A sensor may be added anywhere, so `model` has the derivatives of all outputs.
+/// Candidates for a fit to transmissibilities. A sensor may be added anywhere, so `model` has the derivatives of all
+/// outputs.
 fn of_channels(model: &Loaded, arguments: &Arguments, choices: &Choices) -> Result<Planned, Failure> {
     let fitted = fit::fit(&arguments.campaign, choices)?;
     let plan = fitted.as_plan(choices)?;

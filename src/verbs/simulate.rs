@@ -1,4 +1,5 @@
-//! `qcar simulate`: the cleat runs, sweeps and time histories of a campaign, simulated and compared with the measurement.
+//! `qcar simulate`: the cleat runs, sweeps and time histories of a campaign, simulated and compared with the
+//! measurement.
 
 use std::path::{Path, PathBuf};
 
@@ -40,12 +41,12 @@ use records::Record;
 
 /// Simulate the runs of a campaign and compare them with the measurement
 ///
-/// Sweeps and time histories are replayed: the recorded inputs drive the model, for a time history from an estimated initial
-/// state. Their error is the RMS of the difference over the RMS of the measured signal without its mean (NRMS).
-/// The errors of cleat runs are those of section 3.6.2 of the thesis, after both records are aligned at the peak of the wheel: the error of the peak
-/// during the impact, and that of the RMS after-shake.
-/// With `--road` the model rolls over roads instead of the runs, on the tyre of the campaign. This gives the vibration of each mass on a class of
-/// ISO 8608 or a measured profile, weighted by ISO 2631-1, and the load of the tyre.
+/// Sweeps and time histories are replayed: the recorded inputs drive the model, for a time history from an estimated
+/// initial state. Their error is the RMS of the difference over the RMS of the measured signal without its mean (NRMS).
+/// The errors of cleat runs are those of section 3.6.2 of the thesis, after both records are aligned at the peak of the
+/// wheel: the error of the peak during the impact, and that of the RMS after-shake. With `--road` the model rolls over
+/// roads instead of the runs, on the tyre of the campaign. This gives the vibration of each mass on a class of ISO 8608
+/// or a measured profile, weighted by ISO 2631-1, and the load of the tyre.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar simulate models/campaigns/axle_a_rig --out rides\n  qcar simulate models/campaigns/axle_a_rig --set k_tire=2.3e5 --variant vertical --format csv\n  qcar simulate models/campaigns/silverbox --out replays\n  qcar simulate models/campaigns/axle_a_rig --out viewer --as mdf\n  qcar simulate models/campaigns/axle_a_rig --road C@80km/h --road B#3@120km/h:20s --out spectra"
@@ -55,12 +56,13 @@ pub struct Arguments {
     campaign: PathBuf,
     #[command(flatten)]
     choices: Choices,
-    /// Roll over this road in place of the campaign's runs; may be repeated: a class of ISO 8608 such as C@80km/h, C#7@80km/h with a seed
-    /// of its own, or a measured profile such as road.crg#v=0.5@50km/h; each perhaps with a duration, `:20s`
+    /// Roll over this road in place of the campaign's runs; may be repeated: a class of ISO 8608 such as C@80km/h,
+    /// C#7@80km/h with a seed of its own, or a measured profile such as road.crg#v=0.5@50km/h; each perhaps with a
+    /// duration, `:20s`
     #[arg(long, value_name = "ROAD@SPEED")]
     road: Vec<roads::RequestedRoad>,
-    /// Write the time histories into this folder, a file for each run. For a sweep or time history it has the measured and the simulated
-    /// signals, with an SVG; for a road there are power spectral densities too, as CSV and SVG
+    /// Write the time histories into this folder, a file for each run. For a sweep or time history it has the measured
+    /// and the simulated signals, with an SVG; for a road there are power spectral densities too, as CSV and SVG
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
     /// Format of the files

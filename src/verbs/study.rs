@@ -44,8 +44,9 @@ mod contents;
 
 /// Fit, simulate and discover at once, and write a report
 ///
-/// Fits the model of a campaign to its rig runs, takes the gradients of its K&C curves, searches for what the model lacks,
-/// and simulates the model, before and after, over the cleats. The report is one HTML file that needs no network.
+/// Fits the model of a campaign to its rig runs, takes the gradients of its K&C curves, searches for what the model
+/// lacks, and simulates the model, before and after, over the cleats. The report is one HTML file that needs no
+/// network.
 #[derive(Args)]
 #[command(after_help = "Example:\n  qcar study models/campaigns/axle_c_study --out results")]
 pub struct Arguments {

@@ -53,8 +53,9 @@ fn moved(k: usize, part: f64, drive: &Drive<'_>) -> Vec<Vec<f64>> {
     ride.outputs.into_iter().chain([vertical]).collect()
 }
 
-/// The derivative by that part, by differences of fourth order. The descent of a cleat is made of chords, and at a sample at which the rim comes over
-/// an end of one, a difference is of both sides: the smaller the part, the fewer such samples there are.
+/// The derivative by that part, by differences of fourth order. The descent of a cleat is made of chords, and at a
+/// sample at which the rim comes over an end of one, a difference is of both sides: the smaller the part, the fewer
+/// such samples there are.
 fn difference(k: usize, drive: &Drive<'_>) -> Vec<Vec<f64>> {
     const PART: f64 = 2e-4;
     let rides = [1.0, -1.0, 2.0, -2.0].map(|times| moved(k, times * PART, drive));
@@ -68,7 +69,8 @@ fn difference(k: usize, drive: &Drive<'_>) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// Places of the parameters that a designer moves. Facts of the vehicle are those of its tyre, too, and move with it alone.
+/// Places of the parameters that a designer moves. Facts of the vehicle are those of its tyre, too, and move with it
+/// alone.
 fn leaders() -> Vec<usize> {
     let (parameters, about) = (cleat::parameters(), AxleD.about());
     let all = 0..parameters.as_slice().len();
@@ -90,7 +92,8 @@ fn error(found: &[f64], exact: &[f64], signal: &[f64]) -> f64 {
     (off / square(&mut signal.iter().map(|value| value - signal[0]))).sqrt()
 }
 
-/// The largest error over all signals and every so many parameters, with those that it is of, in the impact and the first of its after-shake.
+/// The largest error over all signals and every so many parameters, with those that it is of, in the impact and the
+/// first of its after-shake.
 fn worst(height: f64, every: usize) -> (f64, usize, String) {
     let road = cleat::cleat(height);
     let drive = Drive {
@@ -253,8 +256,8 @@ impl<'m> Thrown<'m> {
     }
 }
 
-/// The largest error of the derivatives that a fit takes, of all outputs of a model by some of its parameters and those of an effect,
-/// against differences: a part of the signal, or of the derivative where that is larger.
+/// The largest error of the derivatives that a fit takes, of all outputs of a model by some of its parameters and those
+/// of an effect, against differences: a part of the signal, or of the derivative where that is larger.
 fn worst_on_the_grid(model: &dyn Model, added: &[(&str, f64)], points_a_sample: usize) -> f64 {
     let road = cleat::cleat(0.02);
     let thrown = Thrown::new(model, added, cleat::drive(&road, 1.0).samples);
@@ -295,8 +298,8 @@ fn derivatives_on_the_grid_know_tyres_with_states_of_their_own() {
     }
 }
 
-/// The largest errors of the derivatives of a nonlinear axle by a parameter of the tyre and by those of an effect, against differences: with
-/// an exact ride, and as a fit takes them.
+/// The largest errors of the derivatives of a nonlinear axle by a parameter of the tyre and by those of an effect,
+/// against differences: with an exact ride, and as a fit takes them.
 fn worst_of_nonlinear(model: &dyn Model, added: &[(&str, f64)]) -> [f64; 2] {
     // At a kink of a law a difference is of both sides: the smaller the part, the fewer such samples there are.
     const PART: f64 = 4e-5;
@@ -315,8 +318,8 @@ fn worst_of_nonlinear(model: &dyn Model, added: &[(&str, f64)]) -> [f64; 2] {
     worst
 }
 
-/// A friction with a state, a damper that saturates, and a stop with a kink. A fit integrates with a tolerance of 3e-6, as it does the
-/// motion. Quotients of two such rides with parameters that differ by 0.3 % were wrong by 2 to 11 %.
+/// A friction with a state, a damper that saturates, and a stop with a kink. A fit integrates with a tolerance of 3e-6,
+/// as it does the motion. Quotients of two such rides with parameters that differ by 0.3 % were wrong by 2 to 11 %.
 #[test]
 fn derivatives_of_a_nonlinear_axle_are_the_limit_of_differences() {
     let catalogue = Arc::new(effects::catalogue().map_err(|_| "the catalogue reads").unwrap());

@@ -87,8 +87,8 @@ pub fn succeeds(arguments: &[&str]) -> String {
 }
 
 /// A sweep of both pads from 0.5 to 30 Hz in 40 s (peak velocity in m/s), followed by body and wheel of both sides,
-/// integrated with small steps: accelerations in m/s² under this header. `k` is the spring's stiffness in N/m, `c_tire` the
-/// tyre's damping in N s/m.
+/// integrated with small steps: accelerations in m/s² under this header. `k` is the spring's stiffness in N/m, `c_tire`
+/// the tyre's damping in N s/m.
 pub fn sweep(peak_velocity: f64, header: &str, [k, c_tire]: [f64; 2]) -> String {
     let (m_body, m_wheel, c, k_tire) = (270.0, 45.0, 1300.0, 210e3);
     let growth = (30.0f64 / 0.5).ln() / 40.0;

@@ -133,8 +133,8 @@ fn transmissibilities_differ_by_what_their_responses_do() {
     close(number(&own["change"]["magnitude"]), largest, 1e-4);
 }
 
-/// A spring whose rate does not grow is nonlinear in its file alone: in the sweep of a campaign it answers as the linear
-/// one does, but for the straight lines between the places where it is known.
+/// A spring whose rate does not grow is nonlinear in its file alone: in the sweep of a campaign it answers as the
+/// linear one does, but for the straight lines between the places where it is known.
 #[test]
 fn a_nonlinear_model_without_its_effect_answers_as_the_linear_one() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,5 @@
-//! Tables of a dynamometer as evidence: forces in closed form are predicted, and parameters of their laws are found again.
+//! Tables of a dynamometer as evidence: forces in closed form are predicted, and parameters of their laws are found
+//! again.
 
 use std::fmt::Write;
 use std::fs;
@@ -57,8 +58,8 @@ const TRUTH: [(&str, f64); 5] = [
     ("k_seal", 9e3),
 ];
 
-/// The force in the middle of the travel. The friction is the periodic solution of Dahl's law: from a reversal, where it is
-/// `-f tanh(kA/f)`, it nears `f` by a factor of e every `f/k` of travel.
+/// The force in the middle of the travel. The friction is the periodic solution of Dahl's law: from a reversal, where
+/// it is `-f tanh(kA/f)`, it nears `f` by a factor of e every `f/k` of travel.
 fn force(speed: f64, amplitude: f64) -> f64 {
     let [c_out, c_in, v_0, f, k] = TRUTH.map(|(_, value)| value);
     let c = if speed > 0.0 { c_out } else { c_in };
@@ -109,8 +110,8 @@ fn fit(folder: &Path) -> Value {
     serde_json::from_str(&succeeds(&["fit", folder.to_str().unwrap(), "--format", "json"])).unwrap()
 }
 
-/// All five parameters of a law with memory come out within what the fit says that it does not know. Strokes of two lengths tell how
-/// stiffly the seals begin to slip.
+/// All five parameters of a law with memory come out within what the fit says that it does not know. Strokes of two
+/// lengths tell how stiffly the seals begin to slip.
 #[test]
 fn a_law_that_remembers_is_found_from_its_tables() {
     let folder = tempfile::tempdir().unwrap();
@@ -249,8 +250,8 @@ fn units_and_signs_of_a_table_are_those_that_it_states() {
     assert!((value(other.path()) / value(plain.path()) - 1.0).abs() < 1e-6);
 }
 
-/// The least sum of squares for a held speed at which the damping has fallen to a half: over the damping in rebound, in which forces are
-/// linear, and over the gain of the load cell, which is known to 0.7 %.
+/// The least sum of squares for a held speed at which the damping has fallen to a half: over the damping in rebound, in
+/// which forces are linear, and over the gain of the load cell, which is known to 0.7 %.
 fn least_squares(text: &str, v_0: f64) -> f64 {
     let rows: Vec<(f64, f64)> = text
         .lines()
@@ -281,7 +282,8 @@ fn least_squares(text: &str, v_0: f64) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// An end of a profile is where a least squares of its own, over the closed form, has risen by the 95 % quantile of chi-square.
+/// An end of a profile is where a least squares of its own, over the closed form, has risen by the 95 % quantile of
+/// chi-square.
 #[test]
 fn a_profile_ends_where_the_closed_form_puts_it() {
     let folder = tempfile::tempdir().unwrap();
@@ -310,8 +312,8 @@ fn a_profile_ends_where_the_closed_form_puts_it() {
     }
 }
 
-/// A record of the body over a wheel that is moved, for a damper without seals (the parts of `TRUTH` that it has): Runge and Kutta's
-/// method in steps of a tenth of a sample.
+/// A record of the body over a wheel that is moved, for a damper without seals (the parts of `TRUTH` that it has):
+/// Runge and Kutta's method in steps of a tenth of a sample.
 fn record() -> String {
     const RATE: f64 = 200.0;
     let wheel = |t: f64| {
@@ -347,7 +349,8 @@ fn record() -> String {
     text
 }
 
-/// Metrics of a campaign whose model is nonlinear are as sure as its fit: a natural frequency has half the relative error of the stiffness.
+/// Metrics of a campaign whose model is nonlinear are as sure as its fit: a natural frequency has half the relative
+/// error of the stiffness.
 fn is_as_sure_as_its_fit(path: &str) {
     let fitted = fit(Path::new(path));
     let own = succeeds(&["sensitivity", path, "--metrics", "mode.1.frequency", "--format", "json"]);
@@ -391,7 +394,8 @@ fn a_dynamometer_that_is_planned_gives_the_errors_that_it_is_expected_to() {
     let is_it = |own: &&Value| own["what"] == "a dynamometer's table of damper";
     let planned = further.iter().find(is_it).unwrap_or_else(|| panic!("{plan}"));
     assert!(planned["rise"].as_f64().unwrap() > 0.0);
-    // The forces of the law alone, off by one percent of their RMS value: the errors of fourteen draws would themselves scatter by a fifth.
+    // The forces of the law alone, off by one percent of their RMS value: the errors of fourteen draws would themselves
+    // scatter by a fifth.
     let force = |speed: f64| {
         let c = if speed > 0.0 { TRUTH[0].1 } else { TRUTH[1].1 };
         c * speed / (1.0 + speed.abs() / TRUTH[2].1)
@@ -428,8 +432,8 @@ fn a_dynamometer_that_is_planned_gives_the_errors_that_it_is_expected_to() {
     }
 }
 
-/// In the middle of one stroke friction is one number, whatever it is made of: the fit says which parameters are seen only together, and
-/// the plan which measurement tells them apart.
+/// In the middle of one stroke friction is one number, whatever it is made of: the fit says which parameters are seen
+/// only together, and the plan which measurement tells them apart.
 #[test]
 fn what_one_stroke_cannot_tell_apart_is_named_with_its_remedy() {
     let folder = tempfile::tempdir().unwrap();
@@ -462,8 +466,8 @@ fn what_one_stroke_cannot_tell_apart_is_named_with_its_remedy() {
     }
 }
 
-/// The cost of a linear fit is made of transmissibilities, and says so; with `--all-runs` a linear model is fitted to tables, cleats and
-/// K&C curves too, to the truth of its campaign.
+/// The cost of a linear fit is made of transmissibilities, and says so; with `--all-runs` a linear model is fitted to
+/// tables, cleats and K&C curves too, to the truth of its campaign.
 #[test]
 fn a_linear_model_is_fitted_to_all_runs_on_request() {
     let folder = tempfile::tempdir().unwrap();

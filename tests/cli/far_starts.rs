@@ -1,5 +1,5 @@
-//! Records of a system that lacks something large, searched from start values far from the truth: simulations of whole records then say
-//! little, and fits would end in local minima.
+//! Records of a system that lacks something large, searched from start values far from the truth: simulations of whole
+//! records then say little, and fits would end in local minima.
 
 use std::f64::consts::TAU;
 use std::fs;
@@ -50,8 +50,8 @@ fn stepped<const N: usize, I: Copy>(
     std::array::from_fn(|i| x[i] + h / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]))
 }
 
-/// The answer for three runs of this size, of which the last is louder and held out. Mass, damping and stiffness start 30 to 60 % off
-/// from 4 kg, 25 N s/m and 10 N/mm.
+/// The answer for three runs of this size, of which the last is louder and held out. Mass, damping and stiffness start
+/// 30 to 60 % off from 4 kg, 25 N s/m and 10 N/mm.
 fn answer<const N: usize>(folder: &Path, size: f64, rates: impl Fn([f64; N], f64) -> [f64; N]) -> Value {
     let run = |(place, level): (usize, f64)| {
         let own = |t: f64| force(size * level, place, t);
@@ -68,7 +68,8 @@ fn answer<const N: usize>(folder: &Path, size: f64, rates: impl Fn([f64; N], f64
     serde_json::from_str(&succeeds(&["discover", folder.to_str().unwrap(), "--format", "json"])).unwrap()
 }
 
-/// Checks that one effect in this form is found, that it explains at least 99 % on the held-out run, and its parameters to 5 %.
+/// Checks that one effect in this form is found, that it explains at least 99 % on the held-out run, and its parameters
+/// to 5 %.
 fn is_found(answer: &Value, effect: (&str, &str), form: Option<&str>, truth: &[(&str, f64)]) {
     assert_eq!(answer["verdict"], "found", "{answer}");
     let [own] = answer["effects"].as_array().unwrap().as_slice() else {
@@ -86,8 +87,8 @@ fn is_found(answer: &Value, effect: (&str, &str), form: Option<&str>, truth: &[(
     }
 }
 
-/// A mass of 0.32 kg that swings at 11 Hz on the 4 kg splits the resonance. The campaign's mass is five times the default of the model,
-/// of which such a mass may be no more than 70 %.
+/// A mass of 0.32 kg that swings at 11 Hz on the 4 kg splits the resonance. The campaign's mass is five times the
+/// default of the model, of which such a mass may be no more than 70 %.
 #[test]
 fn a_mass_that_splits_the_resonance_is_found_from_far_away() {
     let folder = tempfile::tempdir().unwrap();
@@ -120,7 +121,8 @@ fn a_stop_in_rebound_is_found_from_far_away() {
     );
 }
 
-/// Wire rope: a loop that stiffens as it loads. It is by far not a small change: the loop carries half of the stiffness.
+/// Wire rope: a loop that stiffens as it loads. It is by far not a small change: the loop carries half of the
+/// stiffness.
 #[test]
 fn a_loop_that_stiffens_is_found_from_far_away() {
     let folder = tempfile::tempdir().unwrap();
@@ -155,8 +157,8 @@ fn the_law_of_a_spring_that_gives_way_is_learned_from_far_away() {
     assert!(learned["explained"].as_f64().unwrap() > 0.98, "{learned}");
 }
 
-/// A quarter car on a road whose recorded height has white noise of 3 µm, as of a displacement sensor. Above the band of the road this is
-/// an acceleration that never was; a light part at 120 Hz would filter it out of the prediction.
+/// A quarter car on a road whose recorded height has white noise of 3 µm, as of a displacement sensor. Above the band
+/// of the road this is an acceleration that never was; a light part at 120 Hz would filter it out of the prediction.
 #[test]
 fn noise_in_a_recorded_input_is_no_effect() {
     let folder = tempfile::tempdir().unwrap();

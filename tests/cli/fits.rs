@@ -39,7 +39,8 @@ fn what_is_kept_stays_and_says_so() {
     assert_eq!(fit["parameters"]["c_wheel_x"]["why_no_stderr"]["reason"], "not_seen");
 }
 
-/// One channel alone lets a search take one resonance for another. The text has the values of each minimum, those of JSON.
+/// One channel alone lets a search take one resonance for another. The text has the values of each minimum, those of
+/// JSON.
 #[test]
 fn distinct_minima_are_shown_with_their_costs_and_parameters() {
     let line = [AXLE, "--channels", "pad_to_body", "--starts", "60"];
@@ -122,7 +123,8 @@ fn a_nonlinear_model_is_fitted_to_its_truth() {
     assert!(fit["gap"]["held_out"].as_f64() < Some(1.5), "{}", fit["gap"]);
 }
 
-/// Sweeps, K&C curves and cleats of an axle with a bump stop, by sensors with errors of every kind: the stated errors cover them.
+/// Sweeps, K&C curves and cleats of an axle with a bump stop, by sensors with errors of every kind: the stated errors
+/// cover them.
 #[test]
 fn errors_of_a_nonlinear_fit_cover_those_of_the_sensors() {
     let folder = tempfile::tempdir().unwrap();
@@ -162,8 +164,8 @@ fn errors_of_a_nonlinear_fit_cover_those_of_the_sensors() {
     assert!(off.iter().filter(|(off, _)| off.abs() > 2.0).count() <= 1, "{off:?}");
 }
 
-/// Where bristles damp, a model without that makes up for it by its top mount; with it, all is found. What is hidden is written by
-/// hand in the generator, with a Stribeck peak that is none here.
+/// Where bristles damp, a model without that makes up for it by its top mount; with it, all is found. What is hidden is
+/// written by hand in the generator, with a Stribeck peak that is none here.
 #[test]
 fn friction_with_damped_bristles_is_fitted_to_its_truth() {
     let folder = tempfile::tempdir().unwrap();

@@ -55,7 +55,8 @@ fn a_fit_that_is_stopped_says_that_nothing_was_written() {
     assert!(!folder.path().join("results").exists());
 }
 
-/// What a search tells when it is stopped between the fit of the base model, which takes a part of its time, and its end.
+/// What a search tells when it is stopped between the fit of the base model, which takes a part of its time, and its
+/// end.
 fn stopped_on_the_way(folder: &Path) -> String {
     for doubled in 0..8 {
         let child = started(folder, "discover models/campaigns/axle_c_study --out results");

@@ -1,5 +1,5 @@
-//! Fits of nonlinear laws to records of a car that is simulated here, by laws written by hand: true values lie within two standard errors as often as
-//! these say.
+//! Fits of nonlinear laws to records of a car that is simulated here, by laws written by hand: true values lie within
+//! two standard errors as often as these say.
 
 use std::array;
 use std::f64::consts::TAU;
@@ -73,7 +73,8 @@ const SECONDS: f64 = 4.0;
 const LEVELS: [f64; 2] = [0.5, 1.5];
 /// Standard deviation of the noise of accelerometers, m/s².
 const NOISE: f64 = 0.05;
-/// Standard deviation of a sensor's gain error: the calibration that the fit assumes (`SENSOR` in `discover/noise/calibration.rs`).
+/// Standard deviation of a sensor's gain error: the calibration that the fit assumes (`SENSOR` in
+/// `discover/noise/calibration.rs`).
 const GAIN: f64 = 0.007;
 /// Noise and gain errors are drawn so often.
 const DRAWS: u64 = 6;
@@ -190,8 +191,8 @@ fn a_hydraulic_mount() {
     );
 }
 
-/// Fits a model with an effect to each draw, and compares how far values are off with what the fit says of that. Of normal errors one in
-/// twenty is beyond two standard errors; those of one fit go together.
+/// Fits a model with an effect to each draw, and compares how far values are off with what the fit says of that. Of
+/// normal errors one in twenty is beyond two standard errors; those of one fit go together.
 fn covers((parameters, damper): (&str, &str), effect: Option<&str>, laws: &Laws, hidden: &[(&str, f64)]) {
     let folder = tempfile::tempdir().unwrap();
     let [plain, model] = ["plain.axle", "model.axle"].map(|name| folder.path().join(name));
@@ -244,8 +245,8 @@ fn pad(level: f64, t: f64) -> [f64; 2] {
     [0, 1].map(|k| level * tones.iter().map(|tone| tone[k]).sum::<f64>())
 }
 
-/// At every sample the pad's displacement and the accelerations of body, wheel and engine, by Runge and Kutta's method in steps of a tenth of
-/// a sample.
+/// At every sample the pad's displacement and the accelerations of body, wheel and engine, by Runge and Kutta's method
+/// in steps of a tenth of a sample.
 fn simulated(laws: &Laws, level: f64) -> Vec<[f64; 4]> {
     const FINER: usize = 10;
     let rates = |t: f64, [body, v_body, wheel, v_wheel, engine, v_engine, a, b]: [f64; 8]| {

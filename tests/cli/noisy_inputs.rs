@@ -1,5 +1,5 @@
-//! Records whose input is recorded with more noise than the responses. The machine did not feel that noise, but a model that replays
-//! the record does.
+//! Records whose input is recorded with more noise than the responses. The machine did not feel that noise, but a model
+//! that replays the record does.
 
 use std::f64::consts::TAU;
 use std::fs;
@@ -21,8 +21,8 @@ const MASSES: [f64; 2] = [454.0, 44.0];
 const TIRE: [f64; 2] = [215e3, 100.0];
 const STRUT: [f64; 2] = [27e3, 1650.0];
 
-/// Accelerations of the body and of the wheel over the displacement of the road, as closed forms. `hanging` gives the mass, stiffness
-/// and damping of a mass on the body, which is a part of the corner's.
+/// Accelerations of the body and of the wheel over the displacement of the road, as closed forms. `hanging` gives the
+/// mass, stiffness and damping of a mass on the body, which is a part of the corner's.
 fn response(omega: f64, hanging: Option<[f64; 3]>) -> [Complex64; 2] {
     let dynamic = |[k, c]: [f64; 2]| Complex64::new(k, omega * c);
     let square = omega * omega;
@@ -104,8 +104,8 @@ fn answer(folder: &Path, hanging: Option<[f64; 3]>) -> Value {
     serde_json::from_str(&succeeds(&["discover", folder.to_str().unwrap(), "--format", "json"])).unwrap()
 }
 
-/// A resonator on the wheel or a tyre with dynamic stiffness would filter the noise of the road, and explain responses that are
-/// smaller than those of the recorded road.
+/// A resonator on the wheel or a tyre with dynamic stiffness would filter the noise of the road, and explain responses
+/// that are smaller than those of the recorded road.
 #[test]
 fn noise_of_the_recorded_road_is_no_effect() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,5 +1,5 @@
-//! Plans and profiles: what a further sensor is expected to say is what a fit with it says, and intervals are those of standard
-//! errors where the model is as linear as its Jacobian.
+//! Plans and profiles: what a further sensor is expected to say is what a fit with it says, and intervals are those of
+//! standard errors where the model is as linear as its Jacobian.
 
 use std::fs;
 use std::path::Path;
@@ -114,7 +114,8 @@ fn what_cannot_be_planned_or_profiled_is_refused() {
     }
 }
 
-/// The scatter, gains and measured differences of sides are in both; standard errors may have more, by the least asymmetry.
+/// The scatter, gains and measured differences of sides are in both; standard errors may have more, by the least
+/// asymmetry.
 #[test]
 fn bootstrap_intervals_are_about_as_wide_as_standard_errors() {
     let arguments = ["fit", AXLE, "--bootstrap", "200", "--starts", "1"];
@@ -141,8 +142,8 @@ fn bootstrap_intervals_are_about_as_wide_as_standard_errors() {
     assert!(text.contains("95 % intervals by 200 fits to resamples\n"), "{text}");
 }
 
-/// Near its minimum the model is linear within these errors of a few percent, so that both intervals agree; an end of the range
-/// within them leaves the interval open.
+/// Near its minimum the model is linear within these errors of a few percent, so that both intervals agree; an end of
+/// the range within them leaves the interval open.
 #[test]
 fn profiles_are_as_wide_as_standard_errors_and_open_at_a_bound() {
     let fit = result(&["fit", AXLE, "--profile", "all", "--starts", "2"]);

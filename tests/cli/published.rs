@@ -43,8 +43,8 @@ fn variants_of_the_thesis_differ_as_it_says() {
     }
 }
 
-/// Figures 4.17 and 4.18: the longitudinal force on the wheel but that of the tyre is what is left of its mass times its
-/// acceleration.
+/// Figures 4.17 and 4.18: the longitudinal force on the wheel but that of the tyre is what is left of its mass times
+/// its acceleration.
 #[test]
 fn a_low_longitudinal_stiffness_leaves_the_wheel_to_the_tyre() {
     let folder = repository();
@@ -158,8 +158,9 @@ static_tire_def = 0.02
 static_tire_load = 3924.0
 ";
 
-/// Gobbi and Mastinu (2001): spring and damper with the least dynamic tyre load on a road whose slope is white, and that load. Today's
-/// car has others; `target` finds a design that is as good or better on eight seconds of such a road.
+/// Gobbi and Mastinu (2001): spring and damper with the least dynamic tyre load on a road whose slope is white, and
+/// that load. Today's car has others; `target` finds a design that is as good or better on eight seconds of such a
+/// road.
 #[test]
 fn the_quarter_car_that_holds_the_road_best_is_found() {
     let folder = tempfile::tempdir().unwrap();

@@ -21,7 +21,8 @@ fn the_commands_of_the_readme_run() {
     }
 }
 
-/// The block of the README that shows what a study prints, against what it prints: words alike, numbers within a percent.
+/// The block of the README that shows what a study prints, against what it prints: words alike, numbers within a
+/// percent.
 #[test]
 fn the_summary_of_the_readme_is_that_of_the_study() {
     let blocks = blocks("README.md");

@@ -37,8 +37,8 @@ fn mass_for(count: usize, begin: [f64; 2], force: impl Fn(f64) -> f64) -> Vec<f6
 /// Columns of a run, by the names of their channels.
 pub type Columns<'a> = &'a [(&'a str, Vec<f64>)];
 
-/// Writes a campaign of the shipped model of one mass: parameters and further keys of the runs as in `campaign.toml`, and
-/// a run for each set of columns, the last of them held out where there are several.
+/// Writes a campaign of the shipped model of one mass: parameters and further keys of the runs as in `campaign.toml`,
+/// and a run for each set of columns, the last of them held out where there are several.
 pub fn campaign(folder: &Path, model: &str, parameters: &str, keys: &str, runs: &[Columns]) {
     let mut text = format!("format = 1\nname = \"c\"\nmodel = \"{model}\"\n\n{parameters}\n");
     for (name, location, quantity, unit) in [("push", "f", "force", "N"), ("z", "body", "displacement", "m")] {
@@ -172,8 +172,8 @@ fn moving_campaign(folder: &Path) {
     recorded_campaign(folder, &parameters, &columns);
 }
 
-/// A fit to the samples finds the start of the motion too. Channels are only those of transmissibilities, so that naming one asks for
-/// them.
+/// A fit to the samples finds the start of the motion too. Channels are only those of transmissibilities, so that
+/// naming one asks for them.
 #[test]
 fn a_linear_model_is_fitted_to_the_samples_of_time_histories_alone() {
     let folder = tempfile::tempdir().unwrap();
@@ -416,8 +416,8 @@ fn a_band_and_a_steady_state_are_compared_as_the_campaign_says() {
     refused("band = [0.01, 20.0]", "longer than the");
 }
 
-/// A damper that may not be quite as hard as it is, and one that may by far not be: the one stands at the end of its range,
-/// the other leaves a gap over time.
+/// A damper that may not be quite as hard as it is, and one that may by far not be: the one stands at the end of its
+/// range, the other leaves a gap over time.
 #[test]
 fn bounds_and_spans_of_time_are_told_as_such() {
     let folder = tempfile::tempdir().unwrap();
@@ -443,8 +443,9 @@ fn bounds_and_spans_of_time_are_told_as_such() {
     assert_eq!((heading[4], first[4]), ("unit", "s"), "{said}");
 }
 
-/// A mass that a constant force pushes against a damper on a stiff spring, in closed form. The spring relaxes in 50 µs; a record of
-/// this rate gets steps of 1 ms, and the Runge-Kutta method diverges where a step is longer than 2.8 relaxation times.
+/// A mass that a constant force pushes against a damper on a stiff spring, in closed form. The spring relaxes in 50 µs;
+/// a record of this rate gets steps of 1 ms, and the Runge-Kutta method diverges where a step is longer than 2.8
+/// relaxation times.
 #[test]
 fn steps_are_halved_where_a_law_is_too_stiff_for_them() {
     let [mass, drag, rate, force]: [f64; 4] = [2.0, 300.0, 2e4, 10.0];

@@ -149,7 +149,8 @@ fn a_model_that_cannot_stand_is_refused_once() {
     }
 }
 
-/// What `qcar simulate` says of the campaign with `from` replaced by `to` and its higher cleat by a road of these points.
+/// What `qcar simulate` says of the campaign with `from` replaced by `to` and its higher cleat by a road of these
+/// points.
 fn refused(from: &str, to: &str, road: &[[f64; 2]]) -> String {
     let folder = tempfile::tempdir().unwrap();
     copy(&Path::new(env!("CARGO_MANIFEST_DIR")).join(AXLE), folder.path());

@@ -1,4 +1,5 @@
-//! Campaigns of a rig whose sweeps are made here: what a fit, a discovery and a study say when something is wrong with them.
+//! Campaigns of a rig whose sweeps are made here: what a fit, a discovery and a study say when something is wrong with
+//! them.
 
 use std::fs;
 use std::path::Path;

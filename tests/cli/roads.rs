@@ -126,7 +126,8 @@ fn spectra_of_a_linear_axle_are_those_of_the_road_times_its_response() {
         let road = spectra["road [m^2/Hz]"][line] * (TAU * frequency).powi(4);
         let found = (spectra["z_body_acceleration [(m/s^2)^2/Hz]"][line] / road).sqrt();
         let expected = re.hypot(im);
-        // The axle is linear but for its tyre, which does not roll into the shortest waves and pulls at it, too; thirty segments.
+        // The axle is linear but for its tyre, which does not roll into the shortest waves and pulls at it, too; thirty
+        // segments.
         assert!(
             (found / expected - 1.0).abs() < 0.06,
             "{frequency} Hz: {found}, not {expected}"
@@ -362,6 +363,7 @@ fn a_cleat_may_be_a_road_of_a_measured_file() {
     };
     let [own, plain] =
         [of(folder.path().to_str().unwrap()), of(AXLE)].map(|errors| errors["peak"]["median"].as_f64().unwrap());
-    // What lies on one line to the micrometre becomes one piece, and a rounded millimetre may be on the other side of that.
+    // What lies on one line to the micrometre becomes one piece, and a rounded millimetre may be on the other side of
+    // that.
     assert!((own / plain - 1.0).abs() < 1e-5, "{own} {plain}");
 }

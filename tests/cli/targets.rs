@@ -133,8 +133,8 @@ fn a_campaign_says_how_sure_its_metrics_are() {
     assert_eq!(found["runs"].as_array().unwrap().len(), 3);
 }
 
-/// A model with a digressive damper, beside the campaign of the model without: derivatives through its rides are limits of
-/// differences, which the command line gives for values that are moved.
+/// A model with a digressive damper, beside the campaign of the model without: derivatives through its rides are limits
+/// of differences, which the command line gives for values that are moved.
 #[test]
 fn a_nonlinear_model_of_another_campaign_has_sensitivities() {
     let folder = repository();
@@ -470,7 +470,8 @@ fn values_that_are_wanted_are_met_and_the_design_is_simulated() {
     );
 }
 
-/// A limit of another unit is as wrong for all three cleats, and a cut along a parameter whose range is wrong is no further mistake.
+/// A limit of another unit is as wrong for all three cleats, and a cut along a parameter whose range is wrong is no
+/// further mistake.
 #[test]
 fn a_mistake_is_told_once() {
     let folder = repository();

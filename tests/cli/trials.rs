@@ -1,4 +1,5 @@
-//! Models and campaigns that once went wrong: masses by other names, two tyres, outputs that are missing, numbers that are none.
+//! Models and campaigns that once went wrong: masses by other names, two tyres, outputs that are missing, numbers that
+//! are none.
 
 use std::fs;
 use std::path::Path;

@@ -44,7 +44,8 @@ fn shows(ran: &Ran, shown: &str) {
     }
 }
 
-/// Takes out the lines with `-` and puts in those with `+`, where they and those with a space stand, which is one place.
+/// Takes out the lines with `-` and puts in those with `+`, where they and those with a space stand, which is one
+/// place.
 fn edit(folder: &Path, diff: &str) {
     let (head, hunks) = diff.split_once('\n').unwrap();
     let file = folder.join(head.strip_prefix("--- ").unwrap());

@@ -1,4 +1,5 @@
-//! What is not known of parameters in targets and sensitivities: fits, tolerances and temperature, against closed forms.
+//! What is not known of parameters in targets and sensitivities: fits, tolerances and temperature, against closed
+//! forms.
 
 use std::fs;
 
@@ -6,7 +7,8 @@ use serde_json::Value;
 
 use crate::common::{qcar, repository, run_line, succeeds};
 
-/// A mass on a spring has the frequency `√(k/m)/2π`; its stiffness lies evenly within a tenth, and falls by 0.2 % a kelvin.
+/// A mass on a spring has the frequency `√(k/m)/2π`; its stiffness lies evenly within a tenth, and falls by 0.2 % a
+/// kelvin.
 const UNSURE: &str = "
 subject = \"one_mass\"
 
@@ -28,7 +30,8 @@ per_kelvin = { k_body = \"-0.2 %\" }
 probability = 0.9
 ";
 
-/// What the stiffness turns out as, over what it should be: all cells of tolerance and temperature, which are equally probable.
+/// What the stiffness turns out as, over what it should be: all cells of tolerance and temperature, which are equally
+/// probable.
 fn turns_out() -> impl Iterator<Item = f64> {
     let middle = |cell: u32| (f64::from(cell) + 0.5) / 300.0;
     (0..300).flat_map(move |part| {
@@ -39,7 +42,8 @@ fn turns_out() -> impl Iterator<Item = f64> {
     })
 }
 
-/// The share of a closed form in which the design holds, the interval of its metric, and the box are those that are printed.
+/// The share of a closed form in which the design holds, the interval of its metric, and the box are those that are
+/// printed.
 #[test]
 fn what_is_not_known_counts_as_the_closed_form_has_it() {
     let folder = tempfile::tempdir().unwrap();
@@ -95,7 +99,8 @@ fn what_is_not_known_counts_as_the_closed_form_has_it() {
     assert!(high > 149.0 && (0.05..0.11).contains(&bad), "{low} … {high}: {bad}");
 }
 
-/// The errors of a fit and their correlations go from its results into targets: as sure as the campaign that was fitted.
+/// The errors of a fit and their correlations go from its results into targets: as sure as the campaign that was
+/// fitted.
 #[test]
 fn a_fit_counts_in_targets_with_its_correlations() {
     let folder = repository();
@@ -181,7 +186,8 @@ fn what_cannot_be_unknown_is_refused_with_place_and_remedy() {
     }
 }
 
-/// A temperature that is the same for all parts: the frequency of a mass on a spring has half of what its stiffness has.
+/// A temperature that is the same for all parts: the frequency of a mass on a spring has half of what its stiffness
+/// has.
 #[test]
 fn a_temperature_moves_a_metric_and_its_mean() {
     let line =

@@ -1,4 +1,5 @@
-//! Units: what a file declares means the same as its SI value, and everything is shown in the units that were asked for.
+//! Units: what a file declares means the same as its SI value, and everything is shown in the units that were asked
+//! for.
 
 use std::fs;
 use std::path::Path;

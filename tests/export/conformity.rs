@@ -1,4 +1,5 @@
-//! Exported units before the FMU Manipulation Toolbox, which shares nothing with FMPy: schema and rules of both versions.
+//! Exported units before the FMU Manipulation Toolbox, which shares nothing with FMPy: schema and rules of both
+//! versions.
 
 use std::fs;
 

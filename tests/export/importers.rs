@@ -1,5 +1,5 @@
-//! Exported units in importers that share no code with FMPy nor with one another: they load them, and move as qcar's own
-//! integrator moves the model that it interprets.
+//! Exported units in importers that share no code with FMPy nor with one another: they load them, and move as qcar's
+//! own integrator moves the model that it interprets.
 
 use std::fs;
 use std::path::Path;

@@ -1,4 +1,5 @@
-//! Exported models against other programs: FMPy and four other importers of FMUs, the FMU Manipulation Toolbox, SciPy, GNU Octave, Node; and tables against pyarrow.
+//! Exported models against other programs: FMPy and four other importers of FMUs, the FMU Manipulation Toolbox, SciPy,
+//! GNU Octave, Node; and tables against pyarrow.
 
 mod conformity;
 mod fmu;

@@ -1,5 +1,5 @@
-//! Workbooks in openpyxl: the template filled in by another program is the campaign that it was filled from, and results are
-//! those of the JSON.
+//! Workbooks in openpyxl: the template filled in by another program is the campaign that it was filled from, and
+//! results are those of the JSON.
 
 use std::fs;
 use std::path::Path;
@@ -11,8 +11,8 @@ use crate::programs::{python_with, qcar, run};
 
 const CAMPAIGN: &str = "models/campaigns/axle_a_rig";
 
-/// Values went through decimal fractions of other units, and parameters stand in another order: both move where searches and rides
-/// end within their tolerances. Of numbers below one, such as relative errors, it is the difference.
+/// Values went through decimal fractions of other units, and parameters stand in another order: both move where
+/// searches and rides end within their tolerances. Of numbers below one, such as relative errors, it is the difference.
 const SEARCHED: f64 = 1e-6;
 /// The same of rides, whose signals are held to 1e-3 of their peaks.
 const RIDDEN: f64 = 1e-5;

@@ -1,5 +1,5 @@
-//! The module lists of each crate are the data's path, the crates keep apart, the engine knows no axle by name, each crate
-//! can be packed, and what a page for engineers names is there.
+//! The module lists of each crate are the data's path, the crates keep apart, the engine knows no axle by name, each
+//! crate can be packed, and what a page for engineers names is there.
 
 // Source files.
 mod source;

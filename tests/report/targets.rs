@@ -31,7 +31,8 @@ fn targets_are_whole_in_a_browser() {
     }
 }
 
-/// Metrics follow a slider by their elasticities, whether the page can compute responses or, as of a nonlinear model, not.
+/// Metrics follow a slider by their elasticities, whether the page can compute responses or, as of a nonlinear model,
+/// not.
 #[test]
 fn a_slider_moves_estimates_of_the_targets() {
     let Some(browser) = browser_or_word() else { return };
@@ -89,8 +90,8 @@ fn shown(text: &str) -> f64 {
     number.replace('−', "-").parse().unwrap()
 }
 
-/// The curves of the measured car are those of the campaign's files, all of a run delayed by the same number of samples, and that delay is the one at
-/// which the wheel agrees best with today's axle.
+/// The curves of the measured car are those of the campaign's files, all of a run delayed by the same number of
+/// samples, and that delay is the one at which the wheel agrees best with today's axle.
 #[test]
 fn the_measured_car_lies_beside_both_axles() {
     let data = data_of(&page(&Studied::targets()));

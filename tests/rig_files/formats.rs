@@ -104,8 +104,8 @@ fn both(ending: &str, file: impl Fn(&Group) -> Vec<u8>) -> (Fitted, Fitted) {
     (fitted(&own), fitted(&plain))
 }
 
-/// Values in g are rounded once more than those in m/s^2, by 1e-16; the search ends where its own limit of 1e-9 or less has been
-/// reached, from the same start.
+/// Values in g are rounded once more than those in m/s^2, by 1e-16; the search ends where its own limit of 1e-9 or less
+/// has been reached, from the same start.
 const SAME: f64 = 1e-9;
 
 fn same(ending: &str, file: impl Fn(&Group) -> Vec<u8>) {
@@ -165,8 +165,8 @@ fn a_workbook_gives_the_same_fit() {
     same("xlsx", tables::workbook);
 }
 
-/// Short integers round to 1 in 65504 of a channel's range, which over 40 000 samples is far below the noise of the sensors:
-/// no parameter moves by more than a fifth of its standard error.
+/// Short integers round to 1 in 65504 of a channel's range, which over 40 000 samples is far below the noise of the
+/// sensors: no parameter moves by more than a fifth of its standard error.
 #[test]
 fn rpc_gives_the_same_fit_within_its_rounding() {
     let (own, plain) = both("rsp", rpc::file);

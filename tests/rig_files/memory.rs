@@ -1,4 +1,5 @@
-//! Of a long recording, a campaign holds the channels that its sensors name, as narrow as the file stores them, and not the file.
+//! Of a long recording, a campaign holds the channels that its sensors name, as narrow as the file stores them, and not
+//! the file.
 
 use std::fs::{self, File};
 use std::process::Command;
@@ -22,8 +23,8 @@ fn group(samples: usize) -> Group {
     Group::at(1000.0, (0..16).map(named).collect())
 }
 
-/// The share of a file that is held, at most, while a campaign of two sensors and two windows is opened; `unit` of the sensors where
-/// the file states none.
+/// The share of a file that is held, at most, while a campaign of two sensors and two windows is opened; `unit` of the
+/// sensors where the file states none.
 fn share(name: &str, file: &[u8], unit: &str) -> f64 {
     let sensors = channel("pad", &format!("source = \"channel_0\"{unit}"))
         + &channel("body", &format!("source = \"channel_1\"{unit}"));
@@ -34,8 +35,8 @@ fn share(name: &str, file: &[u8], unit: &str) -> f64 {
     held as f64 / file.len() as f64
 }
 
-/// Two of sixteen channels are an eighth. The times of MDF are there in the record and, while they are read, as a channel; the pages
-/// and pieces in which a file is read, and the samples of the windows, are a few megabytes.
+/// Two of sixteen channels are an eighth. The times of MDF are there in the record and, while they are read, as a
+/// channel; the pages and pieces in which a file is read, and the samples of the windows, are a few megabytes.
 #[test]
 fn a_campaign_holds_the_channels_that_it_names() {
     let (doubles, shorts) = (group(500_000), group(2_000_000));
@@ -68,7 +69,8 @@ fn summaries_of_mdf_keep_no_times() {
     assert!(held < 4_000_000, "{held} bytes");
 }
 
-/// A program that may take no more than 400 MB of addresses tells all sixteen channels of 520 MB, which it looks at in parts.
+/// A program that may take no more than 400 MB of addresses tells all sixteen channels of 520 MB, which it looks at in
+/// parts.
 #[cfg(target_os = "linux")]
 #[test]
 fn all_channels_of_a_long_recording_are_told_in_less_memory_than_it_has() {

@@ -1,4 +1,5 @@
-//! Results of shipped campaigns and targets that take a search each: made once for all test programs, also where these run at a time.
+//! Results of shipped campaigns and targets that take a search each: made once for all test programs, also where these
+//! run at a time.
 
 use std::fmt::Write;
 use std::fs::{self, File};

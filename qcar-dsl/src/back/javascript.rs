@@ -1,6 +1,7 @@
 //! A compiled model as functions of JavaScript, for pages and for programs that run in a browser or in Node.
 //!
-//! Every statement is one operation of a program, in its order. A function takes arrays or numbers and gives a new array.
+//! Every statement is one operation of a program, in its order. A function takes arrays or numbers and gives a new
+//! array.
 
 // A program as a JavaScript function.
 mod function;

@@ -29,8 +29,8 @@ pub struct Point<'a> {
     size: f64,
 }
 
-/// Number of motions of the usual size. Later ones have a tenth of it up to a hundred times it, log-uniform: the pieces of a
-/// curve may lie anywhere.
+/// Number of motions of the usual size. Later ones have a tenth of it up to a hundred times it, log-uniform: the pieces
+/// of a curve may lie anywhere.
 const OF_USUAL_SIZE: u64 = 4;
 
 impl<'a> Point<'a> {

@@ -3,8 +3,8 @@
 //! The unknowns are the amplitudes of all coordinates that are not prescribed, Z(ω) = K + jωC - ω²M is symmetric, and
 //! one factorisation gives every response H and, by its adjoint, every parameter derivative. For the dynamic stiffness
 //! κ of a link with stretch s, `∂H(y,u)/∂κ = -H(y,F) H(s,u)`: the response of the output to a pair of forces on the
-//! link's ends, times the stretch that the excitation causes. A large model with fewer parameters than outputs is solved for the
-//! derivative of all amplitudes by each parameter instead.
+//! link's ends, times the stretch that the excitation causes. A large model with fewer parameters than outputs is
+//! solved for the derivative of all amplitudes by each parameter instead.
 
 // Loads by force inputs.
 mod load;

@@ -1,8 +1,8 @@
 //! The dynamic stiffness of a link: its force for a harmonic stretch of unit amplitude.
 //!
-//! Inner states belong to one link, so they are eliminated here, and the system of coordinates stays symmetric:
-//! κ(ω) = k + jωc - ω²b + f_zᵀ (jω - G)⁻¹ (g_s + jω g_v) for a law f(s, v, z, u) with dz/dt = g(s, v, z, u). A force input
-//! u that the law uses adds φ(ω) = f_u + f_zᵀ (jω - G)⁻¹ g_u.
+//! Inner states belong to one link, so they are eliminated here, and the system of coordinates stays symmetric: κ(ω) =
+//! k + jωc - ω²b + f_zᵀ (jω - G)⁻¹ (g_s + jω g_v) for a law f(s, v, z, u) with dz/dt = g(s, v, z, u). A force input u
+//! that the law uses adds φ(ω) = f_u + f_zᵀ (jω - G)⁻¹ g_u.
 
 use crate::check::Checked;
 use crate::derive::complex::Complex;

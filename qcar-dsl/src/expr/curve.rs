@@ -1,8 +1,9 @@
 //! Curves through points: monotone cubic interpolation, and linear extrapolation with the slopes of the ends.
 //!
-//! Fritsch, F. N., Carlson, R. E.: Monotone piecewise cubic interpolation, SIAM J. Numerical Analysis 17, 1980; slopes by
-//! Fritsch, F. N., Butland, J.: A method for constructing local monotone piecewise cubic interpolants, SIAM J. Scientific
-//! and Statistical Computing 5, 1984, and at the ends as in Moler, C.: Numerical computing with MATLAB, section 3.6, 2004.
+//! Fritsch, F. N., Carlson, R. E.: Monotone piecewise cubic interpolation, SIAM J. Numerical Analysis 17, 1980; slopes
+//! by Fritsch, F. N., Butland, J.: A method for constructing local monotone piecewise cubic interpolants, SIAM J.
+//! Scientific and Statistical Computing 5, 1984, and at the ends as in Moler, C.: Numerical computing with MATLAB,
+//! section 3.6, 2004.
 
 use super::{Expr, Graph};
 

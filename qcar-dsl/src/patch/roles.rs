@@ -24,9 +24,9 @@ pub struct Roles {
     along: Option<String>,
     /// The mass on the tyre. If that is a belt, connected only to one heavier mass, the wheel is the heavier mass.
     wheel: Option<String>,
-    /// The heaviest mass of each direction except the wheel. In the direction of the tyre, it is the heaviest that rests
-    /// on the wheel: the part of a body above the other axle is not. Other directions take the mass of the same name, if
-    /// there is one.
+    /// The heaviest mass of each direction except the wheel. In the direction of the tyre, it is the heaviest that
+    /// rests on the wheel: the part of a body above the other axle is not. Other directions take the mass of the same
+    /// name, if there is one.
     body: BTreeMap<String, String>,
     /// The mass, other than the body, about which levers of the suspension turn.
     pivot: Option<String>,
@@ -94,7 +94,8 @@ impl Roles {
     /// True if a link has a role.
     pub fn is_link(&self, direction: &str, link: &str, role: &str) -> bool {
         let own = self.links.get(&(direction.to_string(), link.to_string()));
-        // A hanger and the mount of a pivot are also mounts. Without a wheel, nothing shows whether a link is a suspension or a mount.
+        // A hanger and the mount of a pivot are also mounts. Without a wheel, nothing shows whether a link is a
+        // suspension or a mount.
         let is_either = |own: &str| match role {
             "mount" => ["hanger", "pivot_mount"].contains(&own) || self.wheel.is_none(),
             "hanger" => self.wheel.is_none(),

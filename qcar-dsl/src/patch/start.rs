@@ -75,8 +75,8 @@ pub fn evaluate(
     if found.is_empty() { Ok(all) } else { Err(found) }
 }
 
-/// Gives the parameters that these expressions use their known values as defaults: a mass that is taken from the body in a share
-/// of the known mass could exceed the body's default.
+/// Gives the parameters that these expressions use their known values as defaults: a mass that is taken from the body
+/// in a share of the known mass could exceed the body's default.
 pub fn set_known_defaults(tree: &mut ModelTree, asked: &[BoundParameter], values: Values) {
     let mut used = Vec::new();
     for e in asked.iter().flat_map(|one| &one.expressions) {

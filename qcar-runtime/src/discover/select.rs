@@ -58,8 +58,8 @@ use super::observe::{Evidence, PredictError, Quieter, Run, Stimulus};
 use super::posterior::{Explanation, Refit, Setting};
 use crate::campaign::Role;
 
-/// Searches for the effects that the model lacks. Calls `progress` with each step and each intermediate result. Removes the
-/// noise of recorded inputs from `evidence`, with a notice, if that makes the measured responses more probable.
+/// Searches for the effects that the model lacks. Calls `progress` with each step and each intermediate result. Removes
+/// the noise of recorded inputs from `evidence`, with a notice, if that makes the measured responses more probable.
 ///
 /// # Errors
 /// Fails if no run may be fitted, if the model lacks a measured quantity, if a parameter has no value, or if the base
@@ -164,8 +164,9 @@ fn search(base: Set, evidence: &Evidence, progress: Progress<'_>) -> (Discovery,
     (discovery, sets.swap_remove(found))
 }
 
-/// True if a model of records alone leaves no more than noise in any run. The uncertainty of a record includes half a percent of the
-/// response, as the smallest error of any model, and what an effect gains below that comes from noise in the recorded inputs, hum, or drift.
+/// True if a model of records alone leaves no more than noise in any run. The uncertainty of a record includes half a
+/// percent of the response, as the smallest error of any model, and what an effect gains below that comes from noise in
+/// the recorded inputs, hum, or drift.
 fn lacks_nothing(base: &Set, evidence: &Evidence) -> bool {
     let is_record = |run: &Run| matches!(run.stimulus, Stimulus::History { .. });
     let leaves_noise = !leaves_more_than_noise(base, evidence) && excess(&base.explanation, evidence) <= 0.0;
@@ -220,10 +221,10 @@ impl Discovery {
 /// contain the best single effect.
 const BEAM: usize = 2;
 
-/// The set to extend next; `None` if no extension is worth trying. This is the most probable set; then the base model with the
-/// nuisance effects that the data show, if the most probable set leaves a significant part; if something is still missing
-/// after that, it is the next one-effect set of the beam. A third effect is tried only if the first two explain
-/// most of the excess residual; if they do not, the catalogue has no answer.
+/// The set to extend next; `None` if no extension is worth trying. This is the most probable set; then the base model
+/// with the nuisance effects that the data show, if the most probable set leaves a significant part; if something is
+/// still missing after that, it is the next one-effect set of the beam. A third effect is tried only if the first two
+/// explain most of the excess residual; if they do not, the catalogue has no answer.
 fn next(sets: &[Set], evidence: &Evidence) -> Option<usize> {
     let best = best(sets);
     let explained = || explained_share(&sets[best_base(sets)], &sets[best], evidence);
@@ -262,8 +263,8 @@ fn unreduced(sets: &[Set]) -> Option<usize> {
 }
 
 /// True if a learned law contradicts the named effects: it is at a place without a named effect, or it explains most of
-/// the excess residual that they leave. A law that fits only a little better at the same place confirms the effect there,
-/// which also has a physical cause.
+/// the excess residual that they leave. A law that fits only a little better at the same place confirms the effect
+/// there, which also has a physical cause.
 fn contradicts(law: &Set, found: &Set, evidence: &Evidence) -> bool {
     let named: Vec<&str> = found.named().map(|own| own.at.as_str()).collect();
     let agrees = law.named().all(|own| named.contains(&own.at.as_str()));

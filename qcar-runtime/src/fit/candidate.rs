@@ -116,7 +116,8 @@ fn sensors<M: Model + ?Sized>(about: &About, runs: &[Run<'_, M>], fitted: &[&Lev
     found
 }
 
-/// A run for each excitation that no fitted run uses, with the sensors of the fitted runs along its axis, or else one at every mass.
+/// A run for each excitation that no fitted run uses, with the sensors of the fitted runs along its axis, or else one
+/// at every mass.
 fn excitations<M: Model + ?Sized>(about: &About, runs: &[Run<'_, M>]) -> Vec<(String, Level)> {
     let unused = (0..about.excitations.len()).filter(|own| runs.iter().all(|run| run.level.excitation != *own));
     let driven = |excitation: usize| {

@@ -111,8 +111,8 @@ fn sets_in<S: Sets<R>, const R: usize>(width: Width, sets: &S, rows: &mut [Lanes
     }
 }
 
-/// Code of a response over a vector of lines. Its arguments are the constants, the frequencies in rad/s, the position of the first
-/// frequency of the vector, and the results.
+/// Code of a response over a vector of lines. Its arguments are the constants, the frequencies in rad/s, the position
+/// of the first frequency of the vector, and the results.
 pub type OverLines<V, const C: usize, const N: usize, const R: usize> =
     unsafe fn(&[Lanes; C], &Lanes, usize, &mut LinesMut<'_, V, N, R>);
 
@@ -156,8 +156,8 @@ pub fn respond<P: Responds<C, N, R>, const C: usize, const N: usize, const R: us
     }
 }
 
-/// A frequency response of several parameter sets at one line. The rows are all real parts, all imaginary parts, and the same of the
-/// Jacobian.
+/// A frequency response of several parameter sets at one line. The rows are all real parts, all imaginary parts, and
+/// the same of the Jacobian.
 ///
 /// # Panics
 ///
@@ -252,7 +252,8 @@ mod tests {
 
     const RESULTS: usize = 20;
 
-    /// A response of two outputs: `a + ω` and `a ω` with imaginary parts `a - ω` and `a / ω`, whose derivative by `a` is of the second.
+    /// A response of two outputs: `a + ω` and `a ω` with imaginary parts `a - ω` and `a / ω`, whose derivative by `a`
+    /// is of the second.
     struct Response;
 
     mod vectors {

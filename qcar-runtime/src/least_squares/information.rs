@@ -222,7 +222,8 @@ mod tests {
         assert!((information.inverse() - &direct).norm() < 1e-12 * direct.norm());
     }
 
-    /// By Cholesky's factor and by singular values: the inverse of two columns at a small angle is known in closed form.
+    /// By Cholesky's factor and by singular values: the inverse of two columns at a small angle is known in closed
+    /// form.
     #[test]
     fn columns_that_are_nearly_parallel_keep_nine_digits() {
         for angle in [1e-2, 1e-4] {

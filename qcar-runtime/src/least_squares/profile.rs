@@ -1,9 +1,9 @@
 //! Profiles: the smallest cost over the other variables for fixed values of one variable, and the interval in which it
 //! rises by less than a threshold.
 //!
-//! Raue et al., "Structural and practical identifiability analysis of partially observed dynamical models by exploiting the
-//! profile likelihood", Bioinformatics 25 (2009). An end is open if the threshold is not reached within the bounds: the
-//! residuals do not determine the variable on that side.
+//! Raue et al., "Structural and practical identifiability analysis of partially observed dynamical models by exploiting
+//! the profile likelihood", Bioinformatics 25 (2009). An end is open if the threshold is not reached within the bounds:
+//! the residuals do not determine the variable on that side.
 
 use super::{Bounds, Options, Outcome, Problem, minimize};
 

@@ -33,8 +33,8 @@ pub fn ratio<M: Model + ?Sized>(
     Ratios::with_derivatives(model, values).ratio(excitation, [numerator, denominator], frequency)
 }
 
-/// Ratios of a model at parameter values. A response has all signals of the model, so it is evaluated once for all ratios that are
-/// asked for in turn under one excitation at the same frequencies.
+/// Ratios of a model at parameter values. A response has all signals of the model, so it is evaluated once for all
+/// ratios that are asked for in turn under one excitation at the same frequencies.
 pub struct Ratios<'a, M: ?Sized> {
     model: &'a M,
     values: &'a Values,

@@ -1,8 +1,9 @@
 //! Sobol indices: the share of a parameter in the variance of a result, alone and in interaction with others.
 //!
 //! The estimators are those of Saltelli, Annoni, Azzini, Campolongo, Ratto and Tarantola, "Variance based sensitivity
-//! analysis of model output", Comp. Phys. Comm. 181 (2010), table 2: for the first order (b), for the total (f), which is
-//! Jansen's. Confidence is by a bootstrap over the base designs (Archer, Saltelli and Sobol, J. Stat. Comput. Simul. 58, 1997).
+//! analysis of model output", Comp. Phys. Comm. 181 (2010), table 2: for the first order (b), for the total (f), which
+//! is Jansen's. Confidence is by a bootstrap over the base designs (Archer, Saltelli and Sobol, J. Stat. Comput. Simul.
+//! 58, 1997).
 
 use crate::progress::{self, OnProgress};
 use crate::random::SplitMix;

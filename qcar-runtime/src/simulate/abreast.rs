@@ -17,8 +17,8 @@ use crate::solver::ExponentialAdams;
 /// Parameters of a car, and the road and speed of its ride.
 pub type RideCase<'a> = (&'a [f64], Drive<'a>);
 
-/// Simulates rides of cars that differ from one by their parameters, each as [`ride`](super::ride()) does; `done` receives
-/// each with its number as soon as it is complete. Signals that are not `kept` are empty.
+/// Simulates rides of cars that differ from one by their parameters, each as [`ride`](super::ride()) does; `done`
+/// receives each with its number as soon as it is complete. Signals that are not `kept` are empty.
 ///
 /// Each ride takes a lane as soon as one is free, so that memory does not grow with their number.
 pub fn rides_abreast<'a, M: Model + ?Sized>(

@@ -23,8 +23,8 @@ const BEFORE: usize = AROUND / 2 - 1;
 impl Gap {
     /// Interpolates the missing points of signals that are stored phase by phase; the first phase has the samples.
     ///
-    /// The signals must be smooth in the gap and for as many strides before it as the integration method looked back. Points
-    /// further away are not used.
+    /// The signals must be smooth in the gap and for as many strides before it as the integration method looked back.
+    /// Points further away are not used.
     pub fn fill(&self, signals: &mut [f64], (phases, length): (usize, usize)) {
         let before = (PAST - 1).min(self.from / self.stride);
         let count = before + (self.to - self.from) / self.stride + 1;

@@ -16,8 +16,8 @@ pub(super) struct Recorder<'a, M: ?Sized> {
     /// Buffer for its rates, then the outputs if the model has to compute them, then force and deflection of the
     /// contact.
     rates: Vec<f64>,
-    /// For each output that is kept, its index in that row. The acceleration of a mass is a rate, so most models need not
-    /// compute their outputs.
+    /// For each output that is kept, its index in that row. The acceleration of a mass is a rate, so most models need
+    /// not compute their outputs.
     places: Vec<Option<usize>>,
     /// The indices that are recorded, those of outputs first.
     recorded: Vec<usize>,

@@ -129,8 +129,8 @@ impl<'a> Replay<'a> {
 
     /// Derivative of each signal of a replay along some directions, for each of these.
     ///
-    /// Those by initial states of a linear model without resets are its free responses. All others are integrated with the motion;
-    /// if it repeats, for as many periods as the replay took to repeat.
+    /// Those by initial states of a linear model without resets are its free responses. All others are integrated with
+    /// the motion; if it repeats, for as many periods as the replay took to repeat.
     pub fn along(
         &self,
         base: &Replayed,
@@ -177,8 +177,8 @@ impl<'a> Replay<'a> {
         (0..directions.len()).map(of_direction).collect()
     }
 
-    /// Follows one period of a replay, with its steps, from the present state or from the `begin` of a record. A row for each
-    /// reading and direction.
+    /// Follows one period of a replay, with its steps, from the present state or from the `begin` of a record. A row
+    /// for each reading and direction.
     fn differentiate(
         &self,
         tangent: &mut Tangent<'_>,

@@ -1,8 +1,8 @@
 //! A faster method for linear axles: an exponential method while the force of the tyre is smooth.
 //!
-//! The steps of the general method are limited by the stability of the fastest mode, and each takes six evaluations. The
-//! exponential method has no such limit and takes one: it steps from sample to sample as long as its polynomials approximate
-//! the force, and leaves the rest to the general method.
+//! The steps of the general method are limited by the stability of the fastest mode, and each takes six evaluations.
+//! The exponential method has no such limit and takes one: it steps from sample to sample as long as its polynomials
+//! approximate the force, and leaves the rest to the general method.
 
 use super::rolling::Rolling;
 use super::sampling::Grid;

@@ -25,12 +25,12 @@ pub struct Tangent {
     pub slopes: Vec<Vec<Vec<f64>>>,
 }
 
-/// Step of the central difference along a direction. Directions are about as large as the parameters, so the truncation error is
-/// the square of the step, and the rounding error is 1e-16 divided by it.
+/// Step of the central difference along a direction. Directions are about as large as the parameters, so the truncation
+/// error is the square of the step, and the rounding error is 1e-16 divided by it.
 const STEP: f64 = 1e-5;
 
-/// Simulates a ride as [`ride`](super::ride()) does, with its derivatives along `directions`, each of which has an entry for
-/// every parameter: the derivative by ε of a ride whose parameters are `p + ε direction`.
+/// Simulates a ride as [`ride`](super::ride()) does, with its derivatives along `directions`, each of which has an
+/// entry for every parameter: the derivative by ε of a ride whose parameters are `p + ε direction`.
 ///
 /// # Errors
 /// As [`ride`](super::ride()), and if a car displaced along a direction has no static equilibrium.

@@ -1,7 +1,8 @@
 //! Many linear systems with one matrix, each under forces that are linear between points: a first-order hold.
 //!
-//! With `dx/dt = A x + u`, and `u` linear in time from `u₀` to `u₁`, the next state is `Φ x + Γ₀ u₀ + Γ₁ u₁` without error,
-//! however fast the system is (M. Hochbruck, A. Ostermann, "Exponential integrators", Acta Numerica 19, 2010, section 2).
+//! With `dx/dt = A x + u`, and `u` linear in time from `u₀` to `u₁`, the next state is `Φ x + Γ₀ u₀ + Γ₁ u₁` without
+//! error, however fast the system is (M. Hochbruck, A. Ostermann, "Exponential integrators", Acta Numerica 19, 2010,
+//! section 2).
 
 use nalgebra::DMatrix;
 

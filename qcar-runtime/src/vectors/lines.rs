@@ -2,7 +2,8 @@
 
 use std::marker::PhantomData;
 
-/// The lines of a response with `N` outputs and `R` results that a vector `V` holds: real parts, imaginary parts, and those of the Jacobian.
+/// The lines of a response with `N` outputs and `R` results that a vector `V` holds: real parts, imaginary parts, and
+/// those of the Jacobian.
 pub struct LinesMut<'a, V, const N: usize, const R: usize> {
     /// The first of these lines in the first row of each part.
     pub(super) parts: [*mut f64; 4],
@@ -31,7 +32,8 @@ impl<'a, V, const N: usize, const R: usize> LinesMut<'a, V, N, R> {
     }
 }
 
-/// The part and the row of a result. A macro, since rustc inlines a function only if it needs the same instructions as its caller.
+/// The part and the row of a result. A macro, since rustc inlines a function only if it needs the same instructions as
+/// its caller.
 macro_rules! place_of_line {
     ($place:ident, $outputs:ident, $results:ident) => {{
         let slopes = $results / 2 - $outputs;

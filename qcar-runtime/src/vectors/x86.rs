@@ -1,7 +1,8 @@
 //! The vectors of x86-64: four numbers with AVX, eight with AVX-512.
 //!
-//! Each method enables the same instructions as the functions that call it, and no others. Only then does rustc inline it; LLVM would
-//! take far longer for the thousands of calls of a model. The methods are safe on a machine that has these instructions.
+//! Each method enables the same instructions as the functions that call it, and no others. Only then does rustc inline
+//! it; LLVM would take far longer for the thousands of calls of a model. The methods are safe on a machine that has
+//! these instructions.
 #![allow(unsafe_code, reason = "vectors are loaded and stored through pointers")]
 #![allow(
     clippy::missing_safety_doc,

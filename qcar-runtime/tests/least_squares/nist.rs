@@ -1,5 +1,5 @@
-//! All 27 nonlinear regressions of NIST's Statistical Reference Datasets, from both starts. The files are those of NIST: what is
-//! certified, the starts and the data are read from them, and only the models are written here.
+//! All 27 nonlinear regressions of NIST's Statistical Reference Datasets, from both starts. The files are those of
+//! NIST: what is certified, the starts and the data are read from them, and only the models are written here.
 
 use std::f64::consts::PI;
 use std::fs;
@@ -175,11 +175,12 @@ fn every_file_has_its_model() {
     assert_eq!(files, MODELS.map(|(name, _)| name.to_string()));
 }
 
-/// Its data obey the model to the 14 digits that they have. What is left of them, and the standard errors, are rounding errors.
+/// Its data obey the model to the 14 digits that they have. What is left of them, and the standard errors, are rounding
+/// errors.
 const EXACT: &str = "Lanczos1";
 
-/// A number in a file or a term of a model that is wrong changes it. Both are certified to eleven digits, of which rounding and
-/// the estimate's last digit cost one.
+/// A number in a file or a term of a model that is wrong changes it. Both are certified to eleven digits, of which
+/// rounding and the estimate's last digit cost one.
 #[test]
 fn the_sum_of_squares_at_the_certified_estimate_is_the_certified_one() {
     for (name, model) in MODELS {

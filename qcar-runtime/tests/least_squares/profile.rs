@@ -1,4 +1,5 @@
-//! Profiles against closed forms: a line in several unknowns, an exponential, a bound, and a product of which only one is seen.
+//! Profiles against closed forms: a line in several unknowns, an exponential, a bound, and a product of which only one
+//! is seen.
 
 use nalgebra::{DMatrix, DVector};
 use qcar_runtime::least_squares::profile::{Profile, Profiled, profile};

@@ -1,5 +1,5 @@
-//! A model written by hand for the tests: body and wheel in z and in x on a tyre that can roll, with its own bookkeeping
-//! of energy.
+//! A model written by hand for the tests: body and wheel in z and in x on a tyre that can roll, with its own
+//! bookkeeping of energy.
 
 use std::borrow::Cow;
 
@@ -30,8 +30,8 @@ const PARAMETERS: [(&str, f64); 11] = [
     ("k_stop", 0.0),
 ];
 
-/// Outputs: the accelerations of body and wheel in z and x, the heights of body and wheel, the wheel's place in x, and the energy
-/// that cannot be accounted for (J).
+/// Outputs: the accelerations of body and wheel in z and x, the heights of body and wheel, the wheel's place in x, and
+/// the energy that cannot be accounted for (J).
 pub const OUTPUTS: [&str; 8] = [
     "z_body_acceleration",
     "z_wheel_acceleration",

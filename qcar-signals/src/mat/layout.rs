@@ -44,8 +44,8 @@ pub(super) fn recording(format: &str, variables: Vec<Variable>, wanted: &Wanted)
     Ok(recording)
 }
 
-/// Arrays among the fields of a structure, beside one of times; `signals` of Simulink, each with `values` and a `label`, are
-/// arrays as well. Structures in a structure are looked at in the same way.
+/// Arrays among the fields of a structure, beside one of times; `signals` of Simulink, each with `values` and a
+/// `label`, are arrays as well. Structures in a structure are looked at in the same way.
 fn structure(
     recording: &mut Recording,
     variable: &str,

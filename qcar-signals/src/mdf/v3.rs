@@ -62,7 +62,8 @@ struct Group {
     channels: Vec<Channel>,
 }
 
-/// Data group: next 4, first channel group 8, trigger 12, data 16, number of groups 20, number of ids around a record 22.
+/// Data group: next 4, first channel group 8, trigger 12, data 16, number of groups 20, number of ids around a record
+/// 22.
 fn add_data_group(
     recording: &mut Recording,
     file: &Bytes,
@@ -141,7 +142,8 @@ fn sorted(groups: &[Group], data: &[u8], around: usize, start: u32) -> Read<Vec<
     Ok(own)
 }
 
-/// Channel group: next 4, first channel 8, comment 12, record id 16, number of channels 18, size of a record 20, records 22.
+/// Channel group: next 4, first channel 8, comment 12, record id 16, number of channels 18, size of a record 20,
+/// records 22.
 fn group(file: &Bytes, block: &Bytes, at: u32, visited: &mut Visited) -> Read<Group> {
     let comment = block.u32(12, "a comment")?;
     let name = if comment == 0 {

@@ -260,8 +260,8 @@ fn add_channels(file: &File, first: u64, record: &Record, visited: &mut Visited,
     Ok(())
 }
 
-/// Channel: links next, composition, name, source, conversion, data, unit, comment; data: type 1, kind of time 1, data type 1,
-/// bit 1, byte 4, bits 4, flags 4, invalidation bit 4.
+/// Channel: links next, composition, name, source, conversion, data, unit, comment; data: type 1, kind of time 1, data
+/// type 1, bit 1, byte 4, bits 4, flags 4, invalidation bit 4.
 fn channel(file: &File, block: &Block, record: &Record, is_array: bool) -> Read<Channel> {
     let data = block.data;
     let name = file.text(block.link(2))?;

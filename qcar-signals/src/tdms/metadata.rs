@@ -234,8 +234,8 @@ fn number(kind: u32) -> Option<Number> {
     })
 }
 
-/// Type 4, dimension 4, number of values 8, number of scalers 4, scalers (type 4, buffer 4, byte 4, format 4, id 4; of digital
-/// lines the format takes 1), number of widths 4, widths of 4 each.
+/// Type 4, dimension 4, number of values 8, number of scalers 4, scalers (type 4, buffer 4, byte 4, format 4, id 4; of
+/// digital lines the format takes 1), number of widths 4, widths of 4 each.
 fn daqmx(from: &Bytes, at: &mut u64, digital: bool) -> Read<Index> {
     let start = *at;
     let count = from.u64(*at + 8, "a number of values")?;

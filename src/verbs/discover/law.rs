@@ -210,7 +210,8 @@ fn is_clock(name: &str, parameters: &[NewParameter]) -> bool {
     own.is_some_and(|own| own.role == ParameterRole::Clock)
 }
 
-/// `it changes from 1 at the start of a run to 0.9 after 10, 0.7 after 30 s`, and no further than the `longest` run (s).
+/// `it changes from 1 at the start of a run to 0.9 after 10, 0.7 after 30 s`, and no further than the `longest` run
+/// (s).
 fn of_time(points: &[(f64, f64)], unit: String, longest: f64) -> String {
     let end = if unit == "s" { longest } else { 1.0 };
     let later = side(points, 1.0).into_iter().filter(|(time, _)| *time <= end);

@@ -92,8 +92,8 @@ pub(crate) fn sites(of: &Answer) -> Vec<(Site, &MissingStiffness)> {
     found
 }
 
-/// Share of the sweeps' residual that the findings explain, relative to the largest share that any effect at `place` could
-/// explain; `None` if it is unknown.
+/// Share of the sweeps' residual that the findings explain, relative to the largest share that any effect at `place`
+/// could explain; `None` if it is unknown.
 pub(crate) fn of_ceiling(of: &Answer, place: &str) -> Option<f64> {
     let there = of
         .sweeps

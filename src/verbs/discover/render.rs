@@ -88,8 +88,8 @@ struct Evidence {
     log_evidence: f64,
     /// Share of the excess residual that the findings explain.
     gap_closed: f64,
-    /// Share of the sweeps' residual that is explained, relative to the largest share that any effect at this place could
-    /// explain; `null` if there are several findings.
+    /// Share of the sweeps' residual that is explained, relative to the largest share that any effect at this place
+    /// could explain; `null` if there are several findings.
     of_ceiling: Option<f64>,
 }
 
@@ -391,8 +391,8 @@ pub(crate) fn sentence(of: &Answer) -> String {
     }
 }
 
-/// RMS residual in standard deviations above which noise does not explain it. Sensors with errors beyond their data sheets
-/// leave less. `LARGE` in the report's `judgement.js` is the same limit.
+/// RMS residual in standard deviations above which noise does not explain it. Sensors with errors beyond their data
+/// sheets leave less. `LARGE` in the report's `judgement.js` is the same limit.
 const LARGE: f64 = 2.0;
 
 /// The verdict `None` as a sentence. It depends on the held-out runs: if the fitted runs show no effect, the model may

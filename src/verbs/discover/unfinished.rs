@@ -1,5 +1,5 @@
-//! Results of an interrupted search: its current model, parameters and residuals. They have not been checked, and each file
-//! says so.
+//! Results of an interrupted search: its current model, parameters and residuals. They have not been checked, and each
+//! file says so.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -28,7 +28,8 @@ pub(super) fn silent_runs(campaign: &Campaign, levels: &[Level]) -> Vec<String> 
     silent.map(say).collect()
 }
 
-/// A sentence for each fitted run that a fit to transmissibilities does not use: the table of a dynamometer, or a free decay.
+/// A sentence for each fitted run that a fit to transmissibilities does not use: the table of a dynamometer, or a free
+/// decay.
 pub(super) fn unused_runs(campaign: &Campaign, levels: &[Level]) -> Vec<String> {
     let fitted = campaign.runs.iter().filter(|run| run.role == Role::Fit);
     let unused = fitted.filter_map(|run| {

@@ -1,7 +1,7 @@
 //! Transmissibilities beside a fit to all runs.
 //!
-//! A campaign with time histories alone, or with a nonlinear model, is fitted to its runs as they are. Its transmissibilities are then
-//! compared at the values of that fit.
+//! A campaign with time histories alone, or with a nonlinear model, is fitted to its runs as they are. Its
+//! transmissibilities are then compared at the values of that fit.
 
 use qcar_runtime::campaign::Campaign;
 use qcar_runtime::fit::Plan;

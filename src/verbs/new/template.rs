@@ -24,8 +24,8 @@ mod tables;
 
 /// Write the workbook of a vehicle for Excel: parameters of both axles, K&C and damper curves, cleats
 ///
-/// Every value has a cell with a name such as front.k_tire, a unit that may be changed, and bounds. A campaign takes it with
-/// `workbook = "vehicle.xlsx"`, and --params takes it wherever values are wanted.
+/// Every value has a cell with a name such as front.k_tire, a unit that may be changed, and bounds. A campaign takes it
+/// with `workbook = "vehicle.xlsx"`, and --params takes it wherever values are wanted.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar new template vehicle.xlsx\n  qcar new template city_car.xlsx --model axle_a --params models/campaigns/axle_a_rig --units engineering"

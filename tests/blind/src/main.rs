@@ -1,6 +1,7 @@
 //! Makes the campaigns of the blind tests.
 //!
-//! `qcar-blind FOLDER --seed N --axle a|c|d [--hide NAME@PLACE[/FORM]:parameter=value,…]… [--flaws all|NAME,…] [--model MODEL]`
+//! `qcar-blind FOLDER --seed N --axle a|c|d [--hide NAME@PLACE[/FORM]:parameter=value,…]… [--flaws all|NAME,…] [--model
+//! MODEL]`
 
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -19,11 +19,11 @@ pub enum Other {
         sigma0: f64,
         sigma1: f64,
     },
-    /// Friction as a smooth function of velocity (Andersson, S., Söderberg, A., Björklund, S.: Friction models for sliding
-    /// dry, boundary and mixed lubricated contacts, Tribology Int. 40, 2007).
+    /// Friction as a smooth function of velocity (Andersson, S., Söderberg, A., Björklund, S.: Friction models for
+    /// sliding dry, boundary and mixed lubricated contacts, Tribology Int. 40, 2007).
     Arctan { f_coulomb: f64, v_slip: f64 },
-    /// Parallel elements that stick and slip (Iwan, W. D.: A distributed-element model for hysteresis, J. Appl. Mech. 33,
-    /// 1966).
+    /// Parallel elements that stick and slip (Iwan, W. D.: A distributed-element model for hysteresis, J. Appl. Mech.
+    /// 33, 1966).
     SlipStack { f_slip: f64, k_stick: f64 },
     /// A foam stop: its force is a power of its compression, with the rate `k_stop` at 10 mm.
     FoamStop { gap: f64, k_stop: f64, power: f64 },
@@ -248,8 +248,8 @@ fn table(digression: f64, v: f64) -> f64 {
     (0..).zip(starts.into_iter().zip(ends)).map(segment).sum()
 }
 
-/// Total force, N, of parallel Maxwell branches, each with a stiffness, N/m, and a frequency, Hz. `inner` are the forces
-/// of the branches; their derivatives go to `rate`.
+/// Total force, N, of parallel Maxwell branches, each with a stiffness, N/m, and a frequency, Hz. `inner` are the
+/// forces of the branches; their derivatives go to `rate`.
 fn maxwell(branches: &[(f64, f64)], v: f64, inner: &[f64], rate: &mut [f64]) -> f64 {
     for (i, (k, frequency)) in branches.iter().enumerate() {
         rate[i] = k * v - TAU * frequency * inner[i];

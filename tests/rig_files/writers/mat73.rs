@@ -1,5 +1,5 @@
-//! MAT 7.3 as MATLAB writes it without compression: HDF5 with a superblock of version 0 behind 512 bytes of text, a column of doubles
-//! for each channel and one of times named `t`. It knows no units.
+//! MAT 7.3 as MATLAB writes it without compression: HDF5 with a superblock of version 0 behind 512 bytes of text, a
+//! column of doubles for each channel and one of times named `t`. It knows no units.
 //!
 //! Addresses count from the superblock.
 
@@ -95,7 +95,8 @@ fn header(file: &mut Vec<u8>, messages: &[(u16, Vec<u8>)]) -> u64 {
     append(file, &[header, body].concat())
 }
 
-/// A heap of names, each in a multiple of eight bytes behind an empty one; gives its address and where in it each name stands.
+/// A heap of names, each in a multiple of eight bytes behind an empty one; gives its address and where in it each name
+/// stands.
 fn heap<'a>(file: &mut Vec<u8>, names: impl Iterator<Item = &'a str>) -> (u64, Vec<u64>) {
     let mut data = vec![0; 8];
     let mut places = Vec::new();

@@ -1,5 +1,5 @@
-//! Measured files as rigs and other programs write them: just what each format demands, from its specification, and nothing
-//! shared with the readers.
+//! Measured files as rigs and other programs write them: just what each format demands, from its specification, and
+//! nothing shared with the readers.
 
 pub mod mat5;
 pub mod mat73;

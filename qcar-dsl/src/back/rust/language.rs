@@ -44,8 +44,8 @@ impl Language for Numbers {
     }
 }
 
-/// Operations on vectors. Each is a function, since rustc inlines only functions that enable the same instructions, and operators
-/// enable none.
+/// Operations on vectors. Each is a function, since rustc inlines only functions that enable the same instructions, and
+/// operators enable none.
 pub struct Vectors;
 
 impl Language for Vectors {

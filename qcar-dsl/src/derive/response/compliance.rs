@@ -30,8 +30,8 @@ pub(super) struct Compliance {
 }
 
 impl Compliance {
-    /// The compliance of the coordinates that are not prescribed, with `adjoints` of so many outputs. Those of many outputs
-    /// are taken from the inverse: by symmetry, it costs about as much as a solution for half of the unknowns.
+    /// The compliance of the coordinates that are not prescribed, with `adjoints` of so many outputs. Those of many
+    /// outputs are taken from the inverse: by symmetry, it costs about as much as a solution for half of the unknowns.
     pub(super) fn of(model: &Checked, g: &mut Graph, impedance: &Symmetric<Complex>, adjoints: usize) -> Self {
         let coordinates = model.coordinates.len();
         let prescribed = |c: usize| {

@@ -29,7 +29,8 @@ pub fn runs(program: &Program) -> Vec<Run> {
     let mut runs = Vec::new();
     for window in places.chunks(WINDOW) {
         let mut waiting = window.to_vec();
-        // The first of the operations with the longest way: its arguments have a longer way or come earlier, so they are computed.
+        // The first of the operations with the longest way: its arguments have a longer way or come earlier, so they
+        // are computed.
         while let Some(next) = waiting.iter().copied().rev().max_by_key(|&place| distances[place]) {
             let kind = kind(&program.ops[next]);
             let (places, others) = waiting.into_iter().partition(|&place| {

@@ -12,8 +12,8 @@ use crate::discover::observe::{Evidence, Kind, Prediction, Series};
 use crate::discover::posterior::Refit;
 use crate::transmissibility::Point;
 
-/// Lines on each side over which q is fitted by a straight line. A smooth law hardly curves over them, and noise averages
-/// out.
+/// Lines on each side over which q is fitted by a straight line. A smooth law hardly curves over them, and noise
+/// averages out.
 const SMOOTH: usize = 2;
 
 /// Direction of the response change.

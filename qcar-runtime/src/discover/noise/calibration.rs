@@ -25,12 +25,12 @@ pub enum Form {
     Offset,
 }
 
-/// Number of shelves of a calibration curve, a choice: about four in each decade of a rig's band. A shelf rises over about
-/// one decade.
+/// Number of shelves of a calibration curve, a choice: about four in each decade of a rig's band. A shelf rises over
+/// about one decade.
 pub const SHELVES: usize = 6;
 
-/// Accuracy class of the calibration curves of a campaign's sensors. Class 0 is that of the data sheets below; each further
-/// class has √2 times the error.
+/// Accuracy class of the calibration curves of a campaign's sensors. Class 0 is that of the data sheets below; each
+/// further class has √2 times the error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct AccuracyClass(usize);
 
@@ -56,8 +56,8 @@ impl AccuracyClass {
         self.shelf() * (SHELVES as f64).sqrt()
     }
 
-    /// Negative log prior of the class, up to a constant: exponential in the error beyond the data sheets, whose mean is
-    /// the error of the data sheets.
+    /// Negative log prior of the class, up to a constant: exponential in the error beyond the data sheets, whose mean
+    /// is the error of the data sheets.
     pub fn cost(self) -> f64 {
         self.shelf() / CALIBRATED - 1.0
     }

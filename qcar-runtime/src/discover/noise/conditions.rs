@@ -13,8 +13,8 @@ use crate::transmissibility::Point;
 impl Nuisance {
     /// Test conditions for these nuisance coefficients: the delay of each series against the excitation, the drive
     /// factors of each run, and the initial states of each record. The phase that a delay adds to a harmonic is part of
-    /// [`Self::sensor_output`] instead. A drive factor is the inverse gain of a reference sensor. It does not change the
-    /// transmissibilities of a linear model.
+    /// [`Self::sensor_output`] instead. A drive factor is the inverse gain of a reference sensor. It does not change
+    /// the transmissibilities of a linear model.
     pub fn conditions(&self, evidence: &Evidence, coefficients: &[f64]) -> TestConditions {
         let delay = |series: &Series| {
             let delays = self.delay_factors(evidence, series).into_iter();
@@ -66,8 +66,8 @@ impl Nuisance {
             .map(move |(k, own)| (first + k, own))
     }
 
-    /// Positions of the coefficients that set the true amplitude of an excitation. A suspected gain of a recorded input is
-    /// left out: beyond its calibration, the gain of an input is an effect of the model.
+    /// Positions of the coefficients that set the true amplitude of an excitation. A suspected gain of a recorded input
+    /// is left out: beyond its calibration, the gain of an input is an effect of the model.
     fn drive_gains(&self, run: &Run, reference: &Point) -> impl Iterator<Item = usize> {
         let is_record = matches!(run.stimulus, Stimulus::History { .. });
         let suspects = self.suspected(reference, Form::Gain).filter(move |_| !is_record);

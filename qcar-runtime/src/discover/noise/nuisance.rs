@@ -139,8 +139,8 @@ impl Nuisance {
         self
     }
 
-    /// Number of coefficients: [`SENSOR`] and the shelves for each sensor in turn, one for each suspect, and one for each
-    /// initial state.
+    /// Number of coefficients: [`SENSOR`] and the shelves for each sensor in turn, one for each suspect, and one for
+    /// each initial state.
     pub fn len(&self) -> usize {
         self.of_sensors() + self.initial_states.len()
     }

@@ -74,8 +74,8 @@ fn moments(series: &Series, run: &Run) -> Vec<f64> {
     }
 }
 
-/// Step of a run divided into `last` steps that contains a position (0 to 1 over the run), and the position in this step
-/// (0 to 1).
+/// Step of a run divided into `last` steps that contains a position (0 to 1 over the run), and the position in this
+/// step (0 to 1).
 fn between(last: usize, part: f64) -> (usize, f64) {
     if last == 0 {
         return (0, 0.0);

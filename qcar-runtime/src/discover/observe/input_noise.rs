@@ -73,8 +73,8 @@ impl Quieter {
         })
     }
 
-    /// The filtered data. The uncertainty of each response includes that of its input: the RMS of what the model makes of
-    /// the noise that the filter leaves.
+    /// The filtered data. The uncertainty of each response includes that of its input: the RMS of what the model makes
+    /// of the noise that the filter leaves.
     ///
     /// # Errors
     /// Fails if the model lacks a measured quantity.
@@ -108,8 +108,8 @@ fn without_noise(samples: &[f64], periodic: bool, random: &mut SplitMix) -> [Vec
     if periodic {
         return filtered(samples, noise, random);
     }
-    // The filter takes its input for one period. Without the line through its ends, and continued by its mirror image with
-    // the opposite sign, the signal has no jump and no kink there.
+    // The filter takes its input for one period. Without the line through its ends, and continued by its mirror image
+    // with the opposite sign, the signal has no jump and no kink there.
     let last = samples.len() - 1;
     let line = |k: usize| samples[0] + (samples[last] - samples[0]) * k as f64 / last as f64;
     let moving: Vec<f64> = (0..=last).map(|k| samples[k] - line(k)).collect();
@@ -164,8 +164,8 @@ mod tests {
         rms(truth.iter().zip(signal).map(|(a, b)| a - b))
     }
 
-    /// A drifting signal whose power ends at a tenth of the band keeps little more than a tenth of the noise power: its ends
-    /// leak.
+    /// A drifting signal whose power ends at a tenth of the band keeps little more than a tenth of the noise power: its
+    /// ends leak.
     #[test]
     fn little_more_than_the_noise_within_the_band_of_the_signal_is_left() {
         let tone = |f: f64, k: usize| (TAU * f * k as f64 / SAMPLES as f64 + f * f).sin();

@@ -21,8 +21,8 @@ pub struct Free {
 }
 
 impl Free {
-    /// Change of the parameter for a finite difference: this part of its value, or near zero of a hundredth of its range.
-    /// Negative where the upper bound is closer than that.
+    /// Change of the parameter for a finite difference: this part of its value, or near zero of a hundredth of its
+    /// range. Negative where the upper bound is closer than that.
     pub(super) fn change(&self, value: f64, part: f64) -> f64 {
         const OF_RANGE: f64 = 1e-2;
         // A positive range may span many decades, so its width is no measure of the parameter.

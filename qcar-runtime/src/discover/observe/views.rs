@@ -81,9 +81,9 @@ impl Evidence {
 }
 
 impl Stimulus {
-    /// Shortens a record that a model is simulated through: a history by the factor `times` up to a limit, a passage with
-    /// values `at` these times (s) to half of them. Returns the new end time (s) and the decimation of the remaining
-    /// values. Other excitations are only decimated.
+    /// Shortens a record that a model is simulated through: a history by the factor `times` up to a limit, a passage
+    /// with values `at` these times (s) to half of them. Returns the new end time (s) and the decimation of the
+    /// remaining values. Other excitations are only decimated.
     fn shorten(&mut self, times: usize, at: &[f64]) -> (f64, usize) {
         match self {
             // A part of a period is not periodic.

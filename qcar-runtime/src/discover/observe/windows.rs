@@ -1,10 +1,10 @@
 //! Records cut into short windows, for a search that begins far from the right model.
 //!
-//! The errors of a wrong model add up along a record, and its phase drifts away from the measurement, so the cost has many
-//! local minima. In a window of a few periods with initial states of its own they hardly add up, and the cost is close to
-//! that of one-step prediction errors (multiple shooting: Bock, H. G., Plitt, K. J., IFAC world congress, 1984; Ribeiro, A. H.,
-//! Tiels, K., Umenberger, J., Schön, T. B., Aguirre, L. A.: On the smoothness of nonlinear system identification, Automatica
-//! 121, 2020).
+//! The errors of a wrong model add up along a record, and its phase drifts away from the measurement, so the cost has
+//! many local minima. In a window of a few periods with initial states of its own they hardly add up, and the cost is
+//! close to that of one-step prediction errors (multiple shooting: Bock, H. G., Plitt, K. J., IFAC world congress,
+//! 1984; Ribeiro, A. H., Tiels, K., Umenberger, J., Schön, T. B., Aguirre, L. A.: On the smoothness of nonlinear system
+//! identification, Automatica 121, 2020).
 
 use std::ops::Range;
 
@@ -22,8 +22,8 @@ const FEWEST_VALUES: usize = 4;
 const ENDS: usize = 4;
 
 impl Evidence {
-    /// The data with windows of this number of mean periods instead of each record; `None` if no record has room for two. A
-    /// periodic record and one of which only a band is compared stay whole.
+    /// The data with windows of this number of mean periods instead of each record; `None` if no record has room for
+    /// two. A periodic record and one of which only a band is compared stay whole.
     pub fn in_windows(&self, periods: f64) -> Option<Self> {
         let (mut runs, mut all) = (Vec::new(), Vec::new());
         for (place, run) in self.runs.iter().enumerate() {
@@ -120,8 +120,8 @@ fn inside(series: &Series, times: &Range<f64>) -> Series {
     own
 }
 
-/// First value of a sensor of a position or a velocity. It differs from the initial state by the motion within a few samples, for
-/// which the initial state is unknown anyway.
+/// First value of a sensor of a position or a velocity. It differs from the initial state by the motion within a few
+/// samples, for which the initial state is unknown anyway.
 fn first_reading(series: &Series) -> Option<(Point, f64)> {
     let shows_state = matches!(series.sensor.quantity, Quantity::Displacement | Quantity::Velocity);
     shows_state.then(|| (series.sensor.clone(), series.value[0].re))

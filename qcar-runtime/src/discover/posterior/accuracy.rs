@@ -1,7 +1,7 @@
 //! Accuracy class of the sensors' calibration curves, estimated from the data.
 //!
-//! A campaign may be measured with worse sensors than those of the data sheets. One class for all of them tells how much
-//! worse. It is the class that makes the data most probable, with the shelves of the curves and all other unknowns
+//! A campaign may be measured with worse sensors than those of the data sheets. One class for all of them tells how
+//! much worse. It is the class that makes the data most probable, with the shelves of the curves and all other unknowns
 //! integrated out (the evidence framework of MacKay, Neural Computation 4, 1992).
 
 use nalgebra::{Cholesky, DMatrix, DVector};

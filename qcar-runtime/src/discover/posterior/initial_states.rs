@@ -1,8 +1,8 @@
 //! Initial states of held-out records, estimated from these records.
 //!
-//! Sensors do not measure all states of the masses at the first sample, in a held-out record as in a fitted one. With all
-//! fitted parameters fixed, the maximum a posteriori of these states is found by Gauss-Newton steps. For a linear model
-//! the first step is exact.
+//! Sensors do not measure all states of the masses at the first sample, in a held-out record as in a fitted one. With
+//! all fitted parameters fixed, the maximum a posteriori of these states is found by Gauss-Newton steps. For a linear
+//! model the first step is exact.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -21,7 +21,8 @@ const SHORTER: f64 = 0.25;
 /// Relative decrease of the sum of squares below which the steps end.
 const CONVERGED: f64 = 1e-4;
 
-/// Completes `conditions` with the initial states of the records of one role, for these coefficients of the sensor errors.
+/// Completes `conditions` with the initial states of the records of one role, for these coefficients of the sensor
+/// errors.
 ///
 /// # Errors
 /// Fails if the model lacks a measured quantity.
@@ -111,8 +112,8 @@ impl Rows {
         let sigma = |k: usize| unknown[k].1;
         let residual = DVector::from_column_slice(&self.residual);
         let jacobian = DMatrix::from_fn(residual.len(), count, |sample, k| sigma(k) * self.columns[k][sample]);
-        // A product of two matrices runs in blocks, which the products of pairs of columns do not: the normal equations would take
-        // most of the time of a long chain.
+        // A product of two matrices runs in blocks, which the products of pairs of columns do not: the normal equations
+        // would take most of the time of a long chain.
         let transposed = jacobian.transpose();
         let mut normal = &transposed * &jacobian;
         let mut slope = &transposed * &residual;

@@ -6,8 +6,8 @@ use crate::model::Model;
 /// Prior standard deviation of a side's log factor: parts of one drawing and springs of one batch.
 pub const SIDE: f64 = 0.015;
 
-/// Standard deviation of the weak prior around the start, as a log ratio: a factor of ten. For a range that reaches zero
-/// it is the width of the range. This prior keeps parameters that the data hardly determine near their start.
+/// Standard deviation of the weak prior around the start, as a log ratio: a factor of ten. For a range that reaches
+/// zero it is the width of the range. This prior keeps parameters that the data hardly determine near their start.
 const WEAK: f64 = std::f64::consts::LN_10;
 
 impl Free {

@@ -12,8 +12,8 @@ use crate::least_squares::{Bounds, Options, Outcome, Problem, minimize};
 /// unrealistic difference of the sides.
 const SIDE_BOUND: f64 = 3.0;
 
-/// Largest sensor error in prior standard deviations if a discrepancy is fitted. Larger errors do not occur in practice;
-/// the prior limits them, and this bound is only a safeguard.
+/// Largest sensor error in prior standard deviations if a discrepancy is fitted. Larger errors do not occur in
+/// practice; the prior limits them, and this bound is only a safeguard.
 const ERROR_BOUND: f64 = 6.0;
 
 /// Largest change of a sensor error that is held, in prior standard deviations: the search needs an interval.

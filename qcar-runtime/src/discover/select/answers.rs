@@ -54,8 +54,8 @@ pub fn answers(sets: &[Set], evidence: &Evidence) -> Vec<Answer> {
 }
 
 /// The set to whose probability a set contributes. If the held-out runs support the whole set, that is the set itself.
-/// Otherwise it is the most probable fully supported set that contains the supported part: the part shows that its effects
-/// are present, but not that no other is.
+/// Otherwise it is the most probable fully supported set that contains the supported part: the part shows that its
+/// effects are present, but not that no other is.
 fn represented_by(place: usize, sets: &[Set], supported: &[usize]) -> usize {
     if supported[place] == place {
         return place;

@@ -1,7 +1,8 @@
 //! Detection limits, if no effect was found: the size at which each effect would have been found.
 //!
-//! An effect of its default size changes the residuals. The part of this change that the other unknowns cannot reproduce
-//! to first order gives its gain in log likelihood. This gain is compared with the gain that a certain answer needs.
+//! An effect of its default size changes the residuals. The part of this change that the other unknowns cannot
+//! reproduce to first order gives its gain in log likelihood. This gain is compared with the gain that a certain answer
+//! needs.
 
 use rayon::prelude::*;
 

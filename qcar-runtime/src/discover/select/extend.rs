@@ -15,8 +15,8 @@ use crate::discover::noise::AccuracyClass;
 use crate::discover::observe::Evidence;
 use crate::discover::posterior::Refit;
 
-/// Fitted sets with one more effect. Empty if the set explains the data well and no candidate passes the screening, where
-/// its gain must exceed the false-alarm threshold and the `lead` of a learned law.
+/// Fitted sets with one more effect. Empty if the set explains the data well and no candidate passes the screening,
+/// where its gain must exceed the false-alarm threshold and the `lead` of a learned law.
 pub fn extensions(set: &Set, lead: f64, evidence: &Evidence, progress: Progress<'_>) -> Vec<Set> {
     let candidates = set.assembly.candidates();
     progress(Update::Step(&format!(

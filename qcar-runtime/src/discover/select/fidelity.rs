@@ -5,8 +5,8 @@ use crate::discover::observe::{Evidence, Stimulus};
 
 /// Line decimation of sweeps in the coarse and the medium data.
 pub const DECIMATION: [usize; 2] = [6, 3];
-/// Mean periods in a window of the coarse and the medium data. A window of two periods determines the stiffness and the damping of
-/// what moves in it, and a frequency that is wrong by a quarter has not lost its phase at the end.
+/// Mean periods in a window of the coarse and the medium data. A window of two periods determines the stiffness and the
+/// damping of what moves in it, and a frequency that is wrong by a quarter has not lost its phase at the end.
 const PERIODS: [f64; 2] = [2.0, 8.0];
 
 /// The data at three fidelities.
@@ -22,8 +22,8 @@ pub struct Fidelity {
 }
 
 impl Fidelity {
-    /// For a search that begins near the right model. The coarse and the medium data keep only the cleat run with the highest
-    /// obstacle, since the simulation of a cleat run takes as long as that of many sweeps.
+    /// For a search that begins near the right model. The coarse and the medium data keep only the cleat run with the
+    /// highest obstacle, since the simulation of a cleat run takes as long as that of many sweeps.
     pub fn of(evidence: &Evidence) -> Self {
         let mut rides: Vec<usize> = (0..evidence.runs.len())
             .filter(|&run| evidence.runs[run].role == Role::Fit && is_ride(&evidence.runs[run].stimulus))
@@ -42,7 +42,8 @@ impl Fidelity {
         }
     }
 
-    /// For a search that may begin far from the right model: records are cut into windows first. `None` if no record can be cut.
+    /// For a search that may begin far from the right model: records are cut into windows first. `None` if no record
+    /// can be cut.
     pub fn in_windows(evidence: &Evidence) -> Option<Self> {
         let usual = Self::of(evidence);
         Some(Self {

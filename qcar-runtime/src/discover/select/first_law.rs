@@ -15,7 +15,8 @@ pub struct FirstLaw {
 }
 
 impl FirstLaw {
-    /// The law; `None` if none can be fitted. Learns again if another set has become the most probable without named effects.
+    /// The law; `None` if none can be fitted. Learns again if another set has become the most probable without named
+    /// effects.
     pub fn for_base(&mut self, sets: &[Set], evidence: &Evidence, progress: Progress<'_>) -> Option<Set> {
         let base = best_base(sets);
         if self.known.as_ref().is_none_or(|(of, _)| *of != base) {

@@ -31,7 +31,8 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
 }
 
 /// True if a set predicts the held-out runs better than another set with the same sensors, or if no run is held out.
-/// With sensors of its own, a set that lacks an effect can take them for so inaccurate that its prediction seems as good.
+/// With sensors of its own, a set that lacks an effect can take them for so inaccurate that its prediction seems as
+/// good.
 pub fn predicts_better(set: &Set, other: &Set, evidence: &Evidence) -> bool {
     let none_held_out = evidence.of_role(Role::HeldOut).next().is_none();
     let score = |own: &Explanation| log_score(own, evidence);

@@ -18,8 +18,8 @@ use crate::discover::observe::Evidence;
 const MOST_LAWS: usize = 2;
 
 /// The set with the laws that the evidence supports beside `base`, starting with the `first`; `None` if it supports
-/// none. `plain` is the base model without nuisance effects. The laws must predict the held-out runs better than `base`, or explain most of the excess residual there if
-/// `base` is far off.
+/// none. `plain` is the base model without nuisance effects. The laws must predict the held-out runs better than
+/// `base`, or explain most of the excess residual there if `base` is far off.
 pub fn learn(base: &Set, first: Option<Set>, plain: &Set, evidence: &Evidence, progress: Progress<'_>) -> Option<Set> {
     let mut best: Option<Set> = None;
     let mut next = first;

@@ -1,5 +1,5 @@
-//! Fits a model from many starts, without a search for missing effects: the best optimum within the ranges, and the other
-//! local minima of the cost.
+//! Fits a model from many starts, without a search for missing effects: the best optimum within the ranges, and the
+//! other local minima of the cost.
 
 use std::collections::BTreeMap;
 

@@ -1,7 +1,7 @@
 //! Selects the best of many candidates by successive halving on the evidence (Jamieson and Talwalkar, AISTATS 2016).
 //!
-//! Each round roughly doubles the budget and halves the number of candidates. A candidate stays as long as its last search
-//! gained at least the distance of its evidence to the best.
+//! Each round roughly doubles the budget and halves the number of candidates. A candidate stays as long as its last
+//! search gained at least the distance of its evidence to the best.
 
 use std::collections::{BTreeMap, HashSet};
 
@@ -53,15 +53,16 @@ const ROUNDS: [Round; 4] = [
     },
 ];
 
-/// Number of runners up to which a candidate enters with all its starts; further candidates enter with their best start.
+/// Number of runners up to which a candidate enters with all its starts; further candidates enter with their best
+/// start.
 const WITH_ALL_STARTS: usize = 9;
 /// Log evidence difference up to which a candidate stays before the last round, whatever its search gained: odds of one
 /// to twenty thousand.
 const NOT_SEPARATED: f64 = 10.0;
 /// Number of candidates with the largest gain that enter, whatever their place and form.
 const ENTRANTS: usize = 6;
-/// Factor on the number of evaluations that are cheap: those of a linear model, and of records in windows. Without it, a light mass on
-/// mounts would be dropped before the fit finds its mode.
+/// Factor on the number of evaluations that are cheap: those of a linear model, and of records in windows. Without it,
+/// a light mass on mounts would be dropped before the fit finds its mode.
 const CHEAP_FACTOR: usize = 3;
 
 /// A candidate after its fit to all fitted runs.
@@ -155,8 +156,8 @@ pub fn race(
 /// Candidates for the first round, among the effects that gain at a place in some form: the ones with the largest gain,
 /// the best of each place, and the best of each form of each effect. The screening shows that something is missing, the
 /// fits show what: the parameters of a model without an effect may have to change much before the effect gains much.
-/// Nuisance effects enter at every place, without a gain: every real axle has them, and what they explain must not be given to
-/// another effect.
+/// Nuisance effects enter at every place, without a gain: every real axle has them, and what they explain must not be
+/// given to another effect.
 pub fn entrants<'p>(candidates: &[Candidate], screened: &'p [Screened]) -> Vec<&'p Screened> {
     let effect = |entry: &Screened| {
         let own = &candidates[entry.candidate];
@@ -196,8 +197,8 @@ fn run<'a>(mut runner: Runner<'a>, evidence: &Evidence, round: &Round, is_cut: b
     Some(runner)
 }
 
-/// The runners that go on, best first, and the dropped candidates. A nuisance effect goes on beside them, since it may be needed
-/// for the right effect to become the best.
+/// The runners that go on, best first, and the dropped candidates. A nuisance effect goes on beside them, since it may
+/// be needed for the right effect to become the best.
 fn best<'a>(
     mut field: Vec<Runner<'a>>,
     candidates: &[Candidate],

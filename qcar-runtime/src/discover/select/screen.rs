@@ -1,9 +1,9 @@
 //! Screens candidates without a fit: the gain of each, to first order in all other unknowns.
 //!
 //! A candidate at given values changes the residuals by `g`. The part of `g` that changes of the other unknowns can
-//! reproduce is projected out, and the rest is compared with the projected residual. This is the score test of C. R. Rao
-//! (Proc. Cambridge Phil. Soc. 44, 1948) with a finite step. The magnitude of the effect is scaled to its largest gain;
-//! its shape parameters are tried on a grid.
+//! reproduce is projected out, and the rest is compared with the projected residual. This is the score test of C. R.
+//! Rao (Proc. Cambridge Phil. Soc. 44, 1948) with a finite step. The magnitude of the effect is scaled to its largest
+//! gain; its shape parameters are tried on a grid.
 
 use std::collections::BTreeMap;
 

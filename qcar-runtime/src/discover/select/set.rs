@@ -59,8 +59,8 @@ impl Set {
         Some(refit.log_evidence).filter(|own| own.is_finite())
     }
 
-    /// Explanation by this set with the sensor errors of another set, if that one needs better sensors. Without an effect,
-    /// the sensors seem worse than they are, and then the effect would seem to explain too little.
+    /// Explanation by this set with the sensor errors of another set, if that one needs better sensors. Without an
+    /// effect, the sensors seem worse than they are, and then the effect would seem to explain too little.
     pub fn with_sensors_of(&self, other: &Set, evidence: &Evidence) -> Cow<'_, Explanation> {
         if self.accuracy() <= other.accuracy() {
             return Cow::Borrowed(&self.explanation);
@@ -139,8 +139,8 @@ impl Set {
     }
 
     /// True if an effect that `part` lacks has a magnitude at its bound: it then imitates another effect. If `part` has
-    /// effects, the shape parameters of the additional ones must be inside their ranges too. There is little residual left
-    /// for them, and at the bound of a shape parameter an effect can imitate almost any other.
+    /// effects, the shape parameters of the additional ones must be inside their ranges too. There is little residual
+    /// left for them, and at the bound of a shape parameter an effect can imitate almost any other.
     pub fn adds_effect_at_bound(&self, part: &Set) -> bool {
         let is_further = !part.names().is_empty();
         let is_at_bound = |own: &Placed| {
@@ -151,8 +151,8 @@ impl Set {
         self.named().filter(is_new).any(is_at_bound)
     }
 
-    /// True if a parameter is at its bound and the other set has fewer free parameters. A law with a parameter at its bound
-    /// reduces to a simpler one, so this set is no alternative to the simpler set.
+    /// True if a parameter is at its bound and the other set has fewer free parameters. A law with a parameter at its
+    /// bound reduces to a simpler one, so this set is no alternative to the simpler set.
     pub fn is_limiting_case_of(&self, other: &Set) -> bool {
         let unknowns = |set: &Set| set.explanation.refit.free.len();
         unknowns(self) > unknowns(other)
@@ -229,8 +229,8 @@ pub fn explained_share(before: &Set, after: &Set, evidence: &Evidence) -> f64 {
     (1.0 - left).max(-1.0)
 }
 
-/// Excess residual: the mean square of the normalised residual above that of noise, which is 1; at least 0. It is that of
-/// the held-out runs, or of the fitted runs if none is held out.
+/// Excess residual: the mean square of the normalised residual above that of noise, which is 1; at least 0. It is that
+/// of the held-out runs, or of the fitted runs if none is held out.
 pub fn excess(own: &Explanation, evidence: &Evidence) -> f64 {
     let held_out = evidence.of_role(Role::HeldOut).next().is_some();
     let rms = if held_out { own.misfit.held_out } else { own.misfit.fit };

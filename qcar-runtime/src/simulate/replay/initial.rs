@@ -1,8 +1,8 @@
 //! Dependence of the readings of a linear model on its initial states.
 //!
-//! A reading is a row times the states, `c x`. After `k` steps of the transition matrix `Φ` it depends on the initial states by
-//! `c Φᵏ`. This row is advanced instead of one state vector for each initial state, so the work grows with the number of
-//! nonzeros of A, whatever the number of states.
+//! A reading is a row times the states, `c x`. After `k` steps of the transition matrix `Φ` it depends on the initial
+//! states by `c Φᵏ`. This row is advanced instead of one state vector for each initial state, so the work grows with
+//! the number of nonzeros of A, whatever the number of states.
 
 use super::Reading;
 use crate::matrices::at_rest;
@@ -73,8 +73,8 @@ impl<'a> FreeResponse<'a> {
         row
     }
 
-    /// The row times the transition matrix of the Runge-Kutta method, `1 + hA + (hA)²/2 + (hA)³/6 + (hA)⁴/24`, for each part of
-    /// a step.
+    /// The row times the transition matrix of the Runge-Kutta method, `1 + hA + (hA)²/2 + (hA)³/6 + (hA)⁴/24`, for each
+    /// part of a step.
     fn step(&self, row: &mut [f64], halvings: u8) {
         let parts = 1_u32 << halvings;
         let h = self.length / f64::from(parts);

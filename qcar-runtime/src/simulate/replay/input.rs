@@ -54,8 +54,8 @@ pub fn rows(about: &About, recorded: &[Recorded], how: &Between, nodes: usize) -
                     _ => Line::through_ends(r.samples, how.rate),
                 };
                 let mut row = derived(r.samples, power - r.power, &line, how, nodes);
-                // The constant of a position moves road and masses alike. A velocity keeps its own, so that it stays the derivative of
-                // the position.
+                // The constant of a position moves road and masses alike. A velocity keeps its own, so that it stays
+                // the derivative of the position.
                 if power == 0 && r.power > 0 && !how.periodic {
                     let first = row[0];
                     row.iter_mut().for_each(|value| *value -= first);
@@ -76,8 +76,8 @@ fn held(samples: &[f64], nodes: usize) -> Vec<f64> {
 
 /// Derivative of order `power` by the spectrum; a negative order integrates.
 ///
-/// The straight `line` between the ends is treated separately, since a record with different ends would ring. An integral has no
-/// mean.
+/// The straight `line` between the ends is treated separately, since a record with different ends would ring. An
+/// integral has no mean.
 fn derived(samples: &[f64], power: i32, line: &Line, how: &Between, nodes: usize) -> Vec<f64> {
     let bent: Vec<f64> = samples
         .iter()
@@ -113,8 +113,9 @@ impl Line {
         }
     }
 
-    /// Line through the first sample and the one that would follow the last, on the parabola through the last three: a displacement is
-    /// smooth, and its derivatives need an end that closes well. A force up to half the sample rate does not tell that sample.
+    /// Line through the first sample and the one that would follow the last, on the parabola through the last three: a
+    /// displacement is smooth, and its derivatives need an end that closes well. A force up to half the sample rate
+    /// does not tell that sample.
     fn through_next(samples: &[f64], rate: f64) -> Self {
         let [.., a, b, c] = samples else {
             return Self::through_ends(samples, rate);

@@ -1,9 +1,10 @@
 //! Derivatives of the signals of a replay by parameters, inputs and initial states, integrated with the motion.
 //!
-//! Each stage of the Runge-Kutta method is differentiated with the model's own Jacobians: `K = A S + ∂f/∂p`, or `A S + B u` for the
-//! log amplitude of an input. So the result is the derivative of the computed motion itself, whatever the length of its steps. At a
-//! kink of a law the stage decides which side counts; forces are continuous there, so the sensitivities do not jump. Only where an
-//! inner state would not decay within a step, the step is halved further: a motion may rest there, but its derivatives would grow.
+//! Each stage of the Runge-Kutta method is differentiated with the model's own Jacobians: `K = A S + ∂f/∂p`, or `A S +
+//! B u` for the log amplitude of an input. So the result is the derivative of the computed motion itself, whatever the
+//! length of its steps. At a kink of a law the stage decides which side counts; forces are continuous there, so the
+//! sensitivities do not jump. Only where an inner state would not decay within a step, the step is halved further: a
+//! motion may rest there, but its derivatives would grow.
 //!
 //! Source: Hairer, Norsett, Wanner, Solving ordinary differential equations I, section I.14.
 
@@ -85,8 +86,8 @@ pub struct Tangent<'a> {
     k: [Vec<f64>; 5],
     x_end: Vec<f64>,
     inputs: [Vec<f64>; 3],
-    /// Workspace of the derivatives: direct effects on the states and on the readings, the points at which these are taken, their
-    /// derivatives, and rows of a block.
+    /// Workspace of the derivatives: direct effects on the states and on the readings, the points at which these are
+    /// taken, their derivatives, and rows of a block.
     direct: [Vec<Lanes>; 2],
     read_at: Vec<usize>,
     read: Vec<Lanes>,
@@ -150,8 +151,8 @@ impl<'a> Tangent<'a> {
         }
     }
 
-    /// Takes the steps of some samples, and adds the derivatives of the readings to `signals`, a row for each reading and
-    /// direction. All Jacobians of these steps are evaluated at once.
+    /// Takes the steps of some samples, and adds the derivatives of the readings to `signals`, a row for each reading
+    /// and direction. All Jacobians of these steps are evaluated at once.
     pub fn follow(&mut self, steps: &[Step<'_>], signals: &mut [Vec<f64>]) {
         self.before.copy_from_slice(&self.x);
         self.finer.clear();

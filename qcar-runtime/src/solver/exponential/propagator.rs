@@ -1,15 +1,15 @@
 //! The matrix of a step: from the states and forces at its beginning to the states at its end.
 //!
-//! In a short step, a part of a long chain moves only its neighbours. Negligible entries are left out, so that the work of a
-//! step grows linearly with the number of states.
+//! In a short step, a part of a long chain moves only its neighbours. Negligible entries are left out, so that the work
+//! of a step grows linearly with the number of states.
 
 use std::array;
 
 use crate::solver::matrix::{Lanes, Matrix};
 use crate::vectors::{Loops, widest};
 
-/// Entries below this value are left out, if the states are scaled so that an entry and its transpose are equal. Over 10⁹
-/// steps their sum stays below the rounding of the states, 10⁻¹⁶.
+/// Entries below this value are left out, if the states are scaled so that an entry and its transpose are equal. Over
+/// 10⁹ steps their sum stays below the rounding of the states, 10⁻¹⁶.
 const NEGLIGIBLE: f64 = 1e-25;
 
 /// A matrix in tiles of four rows and four columns; tiles of zeros are left out.

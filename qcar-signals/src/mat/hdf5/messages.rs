@@ -1,5 +1,5 @@
-//! Object headers of version 1: version 1, reserved 1, messages 2, references 4, bytes 4, fill 4, then messages of type 2,
-//! size 2, flags 1, fill 3 and data.
+//! Object headers of version 1: version 1, reserved 1, messages 2, references 4, bytes 4, fill 4, then messages of type
+//! 2, size 2, flags 1, fill 3 and data.
 
 use crate::bytes::{Bytes, Number, Order, field};
 use crate::error::{Fault, Read};
@@ -95,8 +95,8 @@ impl<'a> Header<'a> {
         Ok(())
     }
 
-    /// Attribute: version 1, reserved 1, sizes of name, type and space of 2 each, then these, which fill up eight bytes in
-    /// version 1, and the data. Version 3 has one byte more.
+    /// Attribute: version 1, reserved 1, sizes of name, type and space of 2 each, then these, which fill up eight bytes
+    /// in version 1, and the data. Version 3 has one byte more.
     fn add_attribute(&mut self, message: &Bytes) -> Read<()> {
         let version = message.u8(0, "an attribute")?;
         let filled = |size: u16| {
@@ -156,8 +156,8 @@ impl Datatype {
 }
 
 impl<'a> Layout<'a> {
-    /// Version 3: version 1, class 1, then what the class says. Versions 1 and 2: version 1, dimensions 1, class 1, fill 5, an
-    /// address 8 unless the class is compact, dimensions of 4 each, of compact data their size 4.
+    /// Version 3: version 1, class 1, then what the class says. Versions 1 and 2: version 1, dimensions 1, class 1,
+    /// fill 5, an address 8 unless the class is compact, dimensions of 4 each, of compact data their size 4.
     fn read(message: &Bytes<'a>) -> Read<Layout<'a>> {
         let (version, class) = (message.u8(0, "a layout")?, message.u8(1, "a layout")?);
         if matches!(version, 1 | 2) {

@@ -19,8 +19,8 @@ pub struct Group {
     cells: Vec<usize>,
     /// Number of residual rows of a value: two if it is complex.
     parts: usize,
-    /// Weight of the log likelihood of each series. An error of the tyre law is the same in all cleat runs, and one force
-    /// moves all masses along an axis, so all series of cleat runs along one axis together count as one.
+    /// Weight of the log likelihood of each series. An error of the tyre law is the same in all cleat runs, and one
+    /// force moves all masses along an axis, so all series of cleat runs along one axis together count as one.
     weight: f64,
     /// Covariance in units of the noise for `τ` = 1.
     correlation: Banded,

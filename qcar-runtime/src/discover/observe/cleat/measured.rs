@@ -15,8 +15,8 @@ use crate::roles::Roles;
 use crate::simulate::{Cleat, tyre};
 use crate::transmissibility::{Point, signal};
 
-/// Half width and spacing of the means, s. The gain is one half at 100 Hz and zero at 200 Hz. This keeps the modes of an
-/// axle and removes effects of the recorder's filter and of the tyre's contact with an edge.
+/// Half width and spacing of the means, s. The gain is one half at 100 Hz and zero at 200 Hz. This keeps the modes of
+/// an axle and removes effects of the recorder's filter and of the tyre's contact with an edge.
 const HALF: f64 = 5e-3;
 /// Duration of the evidence after the tyre circle reaches the obstacle, s: impact and after-shake.
 const DURATION: f64 = 1.0;

@@ -107,8 +107,8 @@ fn accelerations(
     Ok(outputs.iter().map(|&output| ride.outputs[output].clone()).collect())
 }
 
-/// Derivatives of the outputs by each parameter that is `moved`: from the variational equations, or for a point contact,
-/// whose force jumps, from finite differences of passages.
+/// Derivatives of the outputs by each parameter that is `moved`: from the variational equations, or for a point
+/// contact, whose force jumps, from finite differences of passages.
 fn slopes(
     model: &dyn Model,
     (values, base): (&Values, &[Vec<f64>]),

@@ -220,8 +220,8 @@ impl<'a> Drive<'a> {
         self.bench.wheel_of(&self.of_unit)
     }
 
-    /// Moves the free states over `h` s by Newton's method. A linear model has a constant Jacobian, so its first step is
-    /// exact.
+    /// Moves the free states over `h` s by Newton's method. A linear model has a constant Jacobian, so its first step
+    /// is exact.
     pub fn follow(&mut self, h: f64) {
         let last = self.free_values();
         for _ in 0..STEPS {

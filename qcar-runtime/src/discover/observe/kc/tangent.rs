@@ -1,8 +1,8 @@
 //! Forces of a K&C rig and their derivatives by parameters.
 //!
-//! The free states x of an instant solve `r(x, x_last, p) = 0`, an implicit Euler step. So their derivatives follow from those of
-//! the last instant by the implicit function theorem, `-∂r/∂x dx = ∂r/∂x_last dx_last + ∂r/∂p`, with the matrix of
-//! Newton's method at the solution.
+//! The free states x of an instant solve `r(x, x_last, p) = 0`, an implicit Euler step. So their derivatives follow
+//! from those of the last instant by the implicit function theorem, `-∂r/∂x dx = ∂r/∂x_last dx_last + ∂r/∂p`, with the
+//! matrix of Newton's method at the solution.
 
 use std::rc::Rc;
 
@@ -11,8 +11,8 @@ use nalgebra::DVector;
 use super::bench::{Bench, Drive, Factor, Instant, Slope};
 use crate::model::Model;
 
-/// Relative change of a parameter for the derivative of the rig's mobility, a ratio of masses: the error of a central difference
-/// is its square.
+/// Relative change of a parameter for the derivative of the rig's mobility, a ratio of masses: the error of a central
+/// difference is its square.
 const SMALL: f64 = 1e-5;
 
 impl Bench {
@@ -57,7 +57,8 @@ impl Bench {
 
 /// Derivatives along one direction.
 struct Tangent {
-    /// Nonzeros of `∂f/∂p` of this direction in the row of each free state, and in that of the wheel: the state and the nonzero.
+    /// Nonzeros of `∂f/∂p` of this direction in the row of each free state, and in that of the wheel: the state and the
+    /// nonzero.
     of_free: Vec<(usize, usize)>,
     of_wheel: Vec<usize>,
     /// Derivatives of [`Bench::share`] for each free state, and of [`Bench::wheel_of`].

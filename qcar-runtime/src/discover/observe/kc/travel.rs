@@ -1,10 +1,10 @@
 //! Reads a quasi-static K&C cycle: the force over the travel, as the mean of both directions and as half their
 //! difference.
 //!
-//! Friction and damping raise the force in one direction as much as they lower it in the other, so the mean is the force
-//! of springs, stops and bushings. Half the width of the loop is the dry friction plus the damper force at the rig speed.
-//! A campaign does not specify that speed. Sines of known speed limit the damper force; without them the width is not
-//! used.
+//! Friction and damping raise the force in one direction as much as they lower it in the other, so the mean is the
+//! force of springs, stops and bushings. Half the width of the loop is the dry friction plus the damper force at the
+//! rig speed. A campaign does not specify that speed. Sines of known speed limit the damper force; without them the
+//! width is not used.
 
 use nalgebra::Complex;
 
@@ -153,8 +153,8 @@ impl Loop {
         (at.len() > values / 2).then_some(Self { ends, at, forces, most })
     }
 
-    /// Series of the mean or of half the width. All travels share the error `common` (N). It is scaled so that all values
-    /// together are as uncertain as a single one with this error.
+    /// Series of the mean or of half the width. All travels share the error `common` (N). It is scaled so that all
+    /// values together are as uncertain as a single one with this error.
     fn series(&self, run: usize, axis: Axis, kind: Kind, common: f64) -> Series {
         let sign = if kind == Kind::Width { -1.0 } else { 1.0 };
         let floor = (FLOOR * self.most).hypot(common * (self.at.len() as f64).sqrt());

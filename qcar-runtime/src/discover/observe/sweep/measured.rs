@@ -34,8 +34,8 @@ const LINES_APART: f64 = 6.0;
 const FLOOR: f64 = 0.002;
 
 /// Relative difference of the first harmonic between the mean of two sides and one side with mean parameters. If
-/// stiffnesses differ by 1.5 %, resonances differ by 0.75 %. With a damping ratio of 5 %, the mean of two peaks is lower
-/// than one peak by half the square of 0.75 / 2 / 5, and the flanks differ by as much again.
+/// stiffnesses differ by 1.5 %, resonances differ by 0.75 %. With a damping ratio of 5 %, the mean of two peaks is
+/// lower than one peak by half the square of 0.75 / 2 / 5, and the flanks differ by as much again.
 const OF_SIDES: f64 = 0.005;
 
 impl Evidence {

@@ -1,10 +1,10 @@
 //! The non-steady part of a sweep: the harmonics that the estimator reads from it, minus the steady harmonics.
 //!
 //! A sweep never reaches a steady state: friction depends on the motion before, and lightly damped modes keep ringing.
-//! A balance of few harmonics truncates laws with kinks. Near the ends of a sweep the estimator mixes harmonics slightly.
-//! These errors are small against the response and change little with the parameters. So they are computed once: the
-//! model is simulated with the measured motion of the pad, the estimator of the measurement reads the responses, and the
-//! difference from the steady harmonics is added to every prediction of a search.
+//! A balance of few harmonics truncates laws with kinks. Near the ends of a sweep the estimator mixes harmonics
+//! slightly. These errors are small against the response and change little with the parameters. So they are computed
+//! once: the model is simulated with the measured motion of the pad, the estimator of the measurement reads the
+//! responses, and the difference from the steady harmonics is added to every prediction of a search.
 
 use std::borrow::Cow;
 

@@ -15,8 +15,8 @@ use crate::simulate::replay::{Direction, reading};
 use crate::simulate::{Between, Reading, Recorded, Replay};
 use crate::transmissibility::Point;
 
-/// Predicts the sensors of a run with derivatives by the `free` parameters, by the amplitudes of its inputs unless `free`
-/// is empty, and by the initial states if `by_states` is true.
+/// Predicts the sensors of a run with derivatives by the `free` parameters, by the amplitudes of its inputs unless
+/// `free` is empty, and by the initial states if `by_states` is true.
 pub fn history(
     model: &dyn Model,
     values: &Values,
@@ -62,8 +62,8 @@ pub fn history(
     Ok(places.iter().zip(&series).enumerate().map(predict).collect())
 }
 
-/// What the signals are differentiated by: the free parameters with those that follow them, the initial values of some states,
-/// and the amplitudes of the inputs.
+/// What the signals are differentiated by: the free parameters with those that follow them, the initial values of some
+/// states, and the amplitudes of the inputs.
 fn directions(
     model: &dyn Model,
     values: &Values,

@@ -1,4 +1,5 @@
-//! What acts on the derivatives of the states or of the readings: the states' derivatives, and the directions themselves.
+//! What acts on the derivatives of the states or of the readings: the states' derivatives, and the directions
+//! themselves.
 
 use super::super::Reading;
 use super::Direction;
@@ -79,8 +80,9 @@ impl Effects {
         self.ends.len()
     }
 
-    /// The direct effects on all rows at some points, for each block of directions and each of the points. They are gathered
-    /// for all points at once: a vector that is read right after single numbers of it were stored would wait for them.
+    /// The direct effects on all rows at some points, for each block of directions and each of the points. They are
+    /// gathered for all points at once: a vector that is read right after single numbers of it were stored would wait
+    /// for them.
     pub fn direct(
         &self,
         jacobians: &Jacobians,

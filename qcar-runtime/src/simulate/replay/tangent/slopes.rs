@@ -11,7 +11,8 @@ const AT: [f64; STAGES] = [0.0, 0.5, 0.5, 1.0];
 /// Weight of each stage.
 const WEIGHTS: [f64; STAGES] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
 
-/// Advances one block of directions through all parts: its numbers fill a vector, and stay in the cache from part to part.
+/// Advances one block of directions through all parts: its numbers fill a vector, and stay in the cache from part to
+/// part.
 pub struct Advance<'a> {
     /// The parts, with the Jacobians at their stages.
     pub jacobians: &'a Jacobians,
