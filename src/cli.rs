@@ -12,9 +12,9 @@ use crate::verbs::{
 
 /// Quarter-car axle models: compile them, fit them to rig data
 ///
-/// A MODEL is the name of a shipped model (`qcar show` lists them) or the path of a model file. Results go to standard
-/// output, progress and errors to standard error. The exit status is 0 for success, 1 if a verb found a fault (its help
-/// says which), 2 for unusable input, 130 after Ctrl-C.
+/// A MODEL is the name of a shipped model (`qcar show` lists them) or the path of a model file.
+/// Results go to standard output, progress and errors to standard error.
+/// The exit status is 0 for success, 1 if a verb found a fault (its help says which), 2 for unusable input, 130 after Ctrl-C.
 #[derive(Parser)]
 // The same width everywhere, so that help reads in a terminal as it does in the tests.
 #[command(name = "qcar", version, verbatim_doc_comment, term_width = 0)]
