@@ -1,7 +1,8 @@
 //! Probability of each set.
 //!
-//! If the residuals of the most probable set are no larger than noise, this is its posterior probability. Otherwise no
-//! model is exactly right. With many data the posterior then strongly prefers one of two slightly wrong models, and new
+//! If the residuals of the most probable set are no larger than noise, and its sensors are as accurate as their data
+//! sheets, this is its posterior probability. Otherwise no model is exactly right, neither that of the axle nor that of
+//! the sensors' calibration. With many data the posterior then strongly prefers one of two slightly wrong models, and new
 //! data might reverse this preference. In that case the probability is the bagged posterior (Huggins and Miller,
 //! Bayesian Analysis 18, 2023): the mean of the posterior over data that are resampled with replacement, which includes
 //! the scatter of the data. Resampling changes the weights of the data; the fitted parameters stay.
@@ -20,7 +21,8 @@ pub fn probabilities(sets: &[&Set], evidence: &Evidence) -> Vec<f64> {
     let best = sets
         .iter()
         .max_by(|a, b| a.log_posterior().total_cmp(&b.log_posterior()));
-    if !best.is_some_and(|best| leaves_more_than_noise(best, evidence)) {
+    let is_wrong = |best: &&&Set| leaves_more_than_noise(best, evidence) || best.has_inaccurate_sensors();
+    if best.filter(is_wrong).is_none() {
         return posterior(&whole);
     }
     let of_fit = |set: &&Set| set.explanation.log_likelihoods(Role::Fit, evidence).unwrap_or_default();

@@ -92,14 +92,18 @@ impl Set {
     pub fn note_on_sensors(&self) -> Option<String> {
         let class = self.accuracy();
         let percent = |class: AccuracyClass| format!("{:.1} %", 100.0 * class.gain());
-        let calibrated = AccuracyClass::default();
-        (class > calibrated).then(|| {
+        self.has_inaccurate_sensors().then(|| {
             format!(
                 "the gains of the sensors seem to change by {} over the band, where {} is usual; the answer allows for that",
                 percent(class),
-                percent(calibrated)
+                percent(AccuracyClass::default())
             )
         })
+    }
+
+    /// True if the sensors are less accurate than their data sheets.
+    pub fn has_inaccurate_sensors(&self) -> bool {
+        self.accuracy() > AccuracyClass::default()
     }
 
     /// Accuracy class of the sensors in the fit.
