@@ -2,8 +2,8 @@
 //!
 //! If the residuals of the most probable set are no larger than noise, and its sensors are as accurate as their data
 //! sheets, this is its posterior probability. Otherwise no model is exactly right, neither that of the axle nor that of
-//! the sensors' calibration. With many data the posterior then strongly prefers one of two slightly wrong models, and new
-//! data might reverse this preference. In that case the probability is the bagged posterior (Huggins and Miller,
+//! the sensors' calibration. With many data the posterior then strongly prefers one of two slightly wrong models, and
+//! new data might reverse this preference. In that case the probability is the bagged posterior (Huggins and Miller,
 //! Bayesian Analysis 18, 2023): the mean of the posterior over data that are resampled with replacement, which includes
 //! the scatter of the data. Resampling changes the weights of the data; the fitted parameters stay.
 
