@@ -1,9 +1,11 @@
 //! Dates and clock times in texts, as loggers stamp their rows.
 
+use chrono::{Datelike, NaiveDate};
+
 /// Seconds of a day.
 pub(crate) const DAY: f64 = 86_400.0;
-/// Days before 1 January 2000, counted from 1 March of the year 0.
-const BEFORE_2000: u32 = 730_425;
+/// Days from 31 December of the year 0 to 1 January 2000.
+const BEFORE_2000: i32 = 730_120;
 
 /// Seconds in a text such as `12:30:05.25`, `2026-11-26 12:30:05`, `26.11.2026 12:30:05,25` or `2026-11-26`: since
 /// midnight, or with a date since the year 2000. `None` for anything else, such as a day of an unknown month in
@@ -33,9 +35,8 @@ fn since_midnight(time: &str) -> Option<f64> {
     Some(f64::from(hours * 3600 + minutes * 60 + whole) + fraction)
 }
 
-/// Days before a date in the order year, month, day between dashes or slashes, or day, month, year between points.
-///
-/// Source: H. Hinnant, "chrono-Compatible Low-Level Date Algorithms", days_from_civil.
+/// Days from 1 January 2000 to a date in the order year, month, day between dashes or slashes, or day, month, year
+/// between points.
 fn days(date: &str) -> Option<f64> {
     let separator = date.chars().find(|c| !c.is_ascii_digit())?;
     let mut parts = date.split(separator);
@@ -45,15 +46,12 @@ fn days(date: &str) -> Option<f64> {
         ('.', 1..=2, 4) => (last, first),
         _ => return None,
     };
-    let (year, month, day) = (number(year)?, number(month)?, number(day)?);
-    if parts.next().is_some() || !(1..=12).contains(&month) || !(1..=31).contains(&day) {
+    let (year, month, day) = (number(year)?.try_into().ok()?, number(month)?, number(day)?);
+    if parts.next().is_some() {
         return None;
     }
-    // Years begin in March, so that the day of a leap year is the last one.
-    let year = if month > 2 { year } else { year.checked_sub(1)? };
-    let of_year = (153 * ((month + 9) % 12) + 2) / 5 + day - 1;
-    let days = 365 * year + year / 4 - year / 100 + year / 400 + of_year;
-    Some(f64::from(days) - f64::from(BEFORE_2000))
+    let date = NaiveDate::from_ymd_opt(year, month, day)?;
+    Some(f64::from(date.num_days_from_ce() - BEFORE_2000))
 }
 
 /// A whole number of at most four digits.
@@ -94,6 +92,7 @@ mod tests {
             "12.5",
             "1.2.3",
             "2026-13-01",
+            "2026-02-29",
             "12:60:00",
             "12:00:00:00",
             "a:b",
