@@ -333,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn times_that_pass_by_tell_what_kept_ones_do() {
+    fn streamed_times_give_the_time_base_of_stored_ones() {
         let even: Vec<f64> = (0..100).map(|at| 0.5 + f64::from(at) * 1e-3).collect();
         let mut jittered = even.clone();
         jittered[50] += 0.9e-5;
