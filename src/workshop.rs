@@ -258,5 +258,6 @@ fn added(parameter: &NewParameter) -> Added {
         range: parameter.range,
         known: parameter.known,
         role: parameter.role,
+        scales_force: parameter.scales_force,
     }
 }

@@ -346,6 +346,41 @@ fn a_light_mass_on_mounts_is_found_in_sweeps_and_rides_together() {
     assert_near(&answer, &truth);
 }
 
+/// The mass alone fits with a mount more than twice too stiff. From there, the fluid of the mount has a first-order gain
+/// below the threshold of the screening.
+#[test]
+fn a_second_effect_is_found_where_the_parameters_beside_the_first_are_far_off() {
+    let mass = [
+        ("m_pwt", 51.4),
+        ("k_pwt_z", 228e3),
+        ("c_pwt_z", 603.0),
+        ("k_pwt_x", 245e3),
+        ("c_pwt_x", 472.0),
+    ];
+    let mount = [("k_volume", 300e3), ("inertance", 59.5), ("c_track", 535.0)];
+    let order = Order {
+        programme: Programme::fast(),
+        effects: vec![
+            Hidden::new("suspended_mass", "body", &mass),
+            Hidden::new("hydraulic_mount", "powertrain_mount", &mount),
+        ],
+        ..Order::clean("c", 102_300)
+    };
+    let answer = answer_to(order);
+    assert_eq!(answer["verdict"], "found", "{answer}");
+    let effects = answer["effects"].as_array().expect("a list");
+    let mut places: Vec<String> = effects
+        .iter()
+        .map(|own| format!("{} at {}", own["name"], own["at"]))
+        .collect();
+    places.sort();
+    let expected = [
+        r#""hydraulic_mount" at "powertrain_mount""#,
+        r#""suspended_mass" at "body""#,
+    ];
+    assert_eq!(places, expected, "{answer}");
+}
+
 /// The manifest of such a campaign, changed.
 fn edit(folder: &Path, change: impl Fn(&str) -> String) {
     let file = folder.join("campaign.toml");

@@ -30,6 +30,11 @@ impl Unit {
         }
     }
 
+    /// True if the unit has kg once, as those of a mass, stiffness, damping and force do.
+    pub fn is_proportional_to_mass(self) -> bool {
+        self.sixths[0] == Self::KILOGRAM.sixths[0]
+    }
+
     /// The unit of a product.
     pub fn times(self, other: Unit) -> Unit {
         self.combine(other, i16::saturating_add)

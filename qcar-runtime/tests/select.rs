@@ -35,13 +35,17 @@ const TRUTH: [f64; 12] = [
 ];
 const NOISE: f64 = 0.004;
 
-/// A mass on a mount at the body, by the ranges of the mass and of the mount's stiffness.
+/// A mass on a mount at the body, by the ranges of the mass and of the mount's stiffness. If both ends of the latter are
+/// [`STIFF`], it is known.
 #[derive(Clone)]
 struct Hanging {
     name: &'static str,
     mass: (f64, f64),
     stiffness: (f64, f64),
 }
+
+/// Known stiffness of a mount, N/m.
+const STIFF: f64 = 300e3;
 
 impl Hanging {
     fn new(name: &'static str, mass: (f64, f64)) -> Self {
@@ -99,6 +103,7 @@ fn added(name: &str, start: f64, range: (f64, f64), role: ParameterRole) -> Adde
         range,
         known: false,
         role,
+        scales_force: false,
     }
 }
 
@@ -112,12 +117,15 @@ fn hanging(of: &Hanging) -> Candidate {
             model: Box::new(Strut::new(WITH_MASS)),
             parameters: vec![
                 added("m_pwt", (of.mass.0 * of.mass.1).sqrt(), of.mass, STRENGTH),
-                added(
-                    "k_pwt_z",
-                    (of.stiffness.0 * of.stiffness.1).sqrt(),
-                    of.stiffness,
-                    ParameterRole::Shape,
-                ),
+                Added {
+                    known: of.stiffness == (STIFF, STIFF),
+                    ..added(
+                        "k_pwt_z",
+                        (of.stiffness.0 * of.stiffness.1).sqrt(),
+                        of.stiffness,
+                        ParameterRole::Shape,
+                    )
+                },
                 added("c_pwt_z", 500.0, (50.0, 5e3), ParameterRole::Shape),
             ],
         },
@@ -197,7 +205,7 @@ fn answer_of(bench: Bench, evidence: &Evidence) -> Discovery {
     });
     let setting = Setting {
         given: given.collect(),
-        vehicle: Default::default(),
+        vehicle: [("k_pwt_z".to_owned(), STIFF)].into(),
     };
     discover(Box::new(bench), &setting, &mut evidence.clone(), &|_| ()).expect("the model has the sensors")
 }
@@ -220,6 +228,19 @@ fn an_effect_whose_magnitude_stands_at_its_end_is_no_answer() {
     let found = answer(vec![light, heavy], false, &judged);
     assert_eq!(found.verdict, Verdict::Found);
     assert_eq!(found.findings[0].effect, "heavy");
+}
+
+/// The right mass with a mount that is too soft leaves more than noise, with its stiffness at the end of the range.
+#[test]
+fn an_effect_whose_shape_is_at_its_end_and_that_leaves_more_than_noise_is_no_answer() {
+    let soft = Hanging {
+        stiffness: (20e3, 240e3),
+        ..Hanging::new("soft", (20.0, 200.0))
+    };
+    let unknown = answer(vec![soft], false, &evidence(0.0, &LEVELS));
+    assert_eq!(unknown.verdict, Verdict::Unknown);
+    let candidate = &unknown.candidates[0];
+    assert!(candidate.effect == "soft" && candidate.explained > 0.5, "{candidate:?}");
 }
 
 /// With a sensor that is 3 ms late, the mass of 70 kg looks lighter than 69.4 kg until the delay is in the model.
@@ -265,7 +286,7 @@ fn a_law_takes_the_place_of_a_name_that_no_run_confirms() {
         series.sigma.iter_mut().chain(&mut series.noise).for_each(larger);
     }
     let stiff = Hanging {
-        stiffness: (300e3, 2e6),
+        stiffness: (STIFF, STIFF),
         ..Hanging::new("stiff", (20.0, 200.0))
     };
     let law = Hanging::new("law", (20.0, 200.0));

@@ -108,6 +108,9 @@ pub struct NewParameter {
     pub doc: String,
     /// Its role in the effect.
     pub role: ParameterRole,
+    /// True if it is a mass, stiffness, damping, force or another quantity whose unit has kg once. If all of these are
+    /// multiplied by a number, so are the forces of the effect at given motions.
+    pub scales_force: bool,
     /// False for a shared parameter that the model already had.
     pub is_new: bool,
 }

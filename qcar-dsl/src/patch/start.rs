@@ -233,6 +233,7 @@ fn declaration(one: &BoundParameter, numbers: Numbers, base: &ModelTree) -> (New
         known: declared.known,
         doc: declared.doc.clone(),
         role: numbers.role,
+        scales_force: numbers.unit.is_proportional_to_mass(),
         is_new: base.global(&one.name).is_none(),
     };
     (new, parameter)

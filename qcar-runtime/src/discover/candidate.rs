@@ -57,6 +57,8 @@ pub struct Added {
     pub known: bool,
     /// Role of the parameter in its effect.
     pub role: ParameterRole,
+    /// True if its unit has kg once, as those of a mass, stiffness, damping and force do.
+    pub scales_force: bool,
 }
 
 impl Candidate {

@@ -251,6 +251,7 @@ mod tests {
             known,
             doc: String::new(),
             role: qcar_dsl::patch::ParameterRole::Other,
+            scales_force: false,
             is_new: true,
         }
     }

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use super::problem::Posterior;
 use super::refit::Refit;
 use crate::discover::noise::Nuisance;
-use crate::discover::observe::{Evidence, Free};
+use crate::discover::observe::Evidence;
 use crate::least_squares::Problem;
 use crate::model::Model;
 use crate::response::parameters::Values;
@@ -17,24 +17,15 @@ impl Refit {
         Posterior::of(self, model, evidence).linearised(self)
     }
 
-    /// Data residuals of another model with these `values` and sensor errors in place of the `fitted` one; `None` if
+    /// Data residuals of another model with these values, those of the recorded side and these sensor errors; `None` if
     /// one is not finite.
     pub fn residuals_of(
         &self,
         other: &dyn Model,
-        values: &Values,
+        (values, side): (&Values, Values),
         (nuisance, coefficients): (Nuisance, &[f64]),
-        fitted: &dyn Model,
         evidence: &Evidence,
     ) -> Option<DVector<f64>> {
-        let name = |free: &Free| &fitted.about().parameters[free.parameter].name;
-        let place = |free: &Free| other.about().parameters.iter().position(|p| p.name == *name(free));
-        let mut side = values.clone();
-        for free in &self.free {
-            if let Some(parameter) = place(free) {
-                side.set(parameter, self.side.as_slice()[free.parameter]);
-            }
-        }
         let mut posterior = Posterior::new(other, values.clone(), &[], evidence, nuisance);
         posterior.side = side;
         posterior.has_discrepancy = self.discrepancy.is_some();

@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use nalgebra::DVector;
+
 use super::unknowns::Unknowns;
 use crate::campaign::Role;
 use crate::discover::candidate::{Added, Candidate, Change, Workshop};
@@ -79,6 +81,34 @@ impl Place {
             initial_states: Vec::new(),
             discrepancy: Discrepancy::of(evidence, Role::Fit),
         }
+    }
+
+    /// The place of `refit` with its unknowns changed by these amounts, in the order of the columns of its Jacobian.
+    /// Parameters stay within their ranges.
+    pub fn changed_by(&self, change: &DVector<f64>, refit: &Refit, model: &dyn Model) -> Self {
+        let mut there = self.clone();
+        let (parameters, others) = change.as_slice().split_at(refit.free.len());
+        let (sensors, others) = others.split_at(refit.nuisance.of_sensors());
+        let (states, sides) = others.split_at(refit.nuisance.len() - sensors.len());
+        let name = |free: &Free| model.about().parameters[free.parameter].name.to_string();
+        for (free, change) in refit.free.iter().zip(parameters) {
+            let value = refit.values.as_slice()[free.parameter] + change;
+            there.named.insert(name(free), value.clamp(free.lower, free.upper));
+        }
+        there
+            .errors
+            .iter_mut()
+            .zip(sensors)
+            .for_each(|(own, change)| *own += change);
+        there
+            .initial_states
+            .iter_mut()
+            .zip(states)
+            .for_each(|((_, own), change)| *own += change);
+        for (free, change) in refit.free.iter().zip(sides) {
+            *there.sides.entry(name(free)).or_default() += change;
+        }
+        there
     }
 }
 
@@ -226,13 +256,21 @@ impl<'a> Hypothesis<'a> {
         self.model
     }
 
-    /// The nuisance parameters of `refit`, with the suspected sensor errors of this hypothesis instead of its own, and
-    /// their coefficients at `place`.
-    pub fn nuisance_at(&self, refit: &Refit, place: &Place) -> (Nuisance, Vec<f64>) {
+    /// Data residuals at a place, in units of the noise, with the calibration and the non-steady part of `refit`; `None`
+    /// if one is not finite.
+    pub fn residuals_at(&self, place: &Place, refit: &Refit, evidence: &Evidence) -> Option<DVector<f64>> {
+        let values = self.values(&place.named).ok()?;
+        let mut side = values.clone();
+        for (name, factor) in &place.sides {
+            if let Some(parameter) = self.model.about().parameters.iter().position(|p| p.name == *name) {
+                side.set(parameter, values.as_slice()[parameter] * factor.exp());
+            }
+        }
         let mut nuisance = refit.nuisance.clone();
         nuisance.suspects.clone_from(&self.nuisance.suspects);
-        let initial_states = &refit.coefficients[refit.nuisance.of_sensors()..];
-        (nuisance, place.errors.iter().chain(initial_states).copied().collect())
+        let initial_states = place.initial_states.iter().map(|(_, value)| *value);
+        let coefficients: Vec<f64> = place.errors.iter().copied().chain(initial_states).collect();
+        refit.residuals_of(self.model, (&values, side), (nuisance, &coefficients), evidence)
     }
 
     /// Number of coefficients of its sensor errors.

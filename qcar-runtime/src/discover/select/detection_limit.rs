@@ -28,10 +28,7 @@ pub fn detection_limits(assembly: &Assembly, refit: &Refit, evidence: &Evidence)
     let of = first_forms.into_par_iter().filter_map(|candidate| {
         let hypothesis = assembly.hypothesis_with(candidate)?;
         let from = Point::at_start(candidate).at(&here, &hypothesis, candidate);
-        let values = hypothesis.values(&from.named).ok()?;
-        let (nuisance, coefficients) = hypothesis.nuisance_at(refit, &from);
-        let nuisance = (nuisance, coefficients.as_slice());
-        let there = refit.residuals_of(hypothesis.model(), &values, nuisance, assembly.model(), evidence)?;
+        let there = hypothesis.residuals_at(&from, refit, evidence)?;
         let gain = tangent.independent_change(&there)? / 2.0;
         let over_limit = (gain / needed(candidate, &candidates, gain, &evidence.numbers)).sqrt();
         over_limit.is_finite().then(|| DetectionLimit {

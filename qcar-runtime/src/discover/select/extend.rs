@@ -15,8 +15,8 @@ use crate::discover::noise::AccuracyClass;
 use crate::discover::observe::Evidence;
 use crate::discover::posterior::Refit;
 
-/// Fitted sets with one more effect. Empty if the set explains the data well and no candidate passes the screening,
-/// where its gain must exceed the false-alarm threshold and the `lead` of a learned law.
+/// Fitted sets with one more effect. If the set explains the data well, or a learned law leads it, a candidate must
+/// pass the screening: its gain must exceed the false-alarm threshold and the `lead` of the law. Empty if none does.
 pub fn extensions(set: &Set, lead: f64, evidence: &Evidence, progress: Progress<'_>) -> Vec<Set> {
     let candidates = set.assembly.candidates();
     progress(Update::Step(&format!(
@@ -102,10 +102,11 @@ fn extended(
 ) -> Vec<Set> {
     let SearchStart { fidelity, refit } = start;
     let mut screened = screen(&set.assembly, candidates, refit, &fidelity.coarse);
-    // A model with a large residual has poor parameters, which makes a first-order gain unreliable. So every candidate
-    // also starts from the given values, whatever its gain. Sets with effects have already been fitted from there.
-    let is_far_off = set.names().is_empty() && is_missing(set, evidence);
-    if is_far_off {
+    // A model with a large residual has poor parameters, which makes a first-order gain unreliable. So the candidates
+    // are fitted whatever their gain, unless a learned law explains that residual. Those of the base model also start
+    // from the given values; sets with effects have already been fitted from there.
+    let is_far_off = lead == 0.0 && is_missing(set, evidence);
+    if is_far_off && set.names().is_empty() {
         let given = Place::given(&fidelity.coarse);
         for own in &mut screened {
             own.start_from(&given, &set.assembly, &candidates[own.candidate]);
@@ -114,7 +115,7 @@ fn extended(
     let least = (candidates.len() as f64 / evidence.numbers.false_alarms).ln();
     // The screening uses every sixth line only, while the lead counts all lines.
     let least = least.max(lead / DECIMATION[0] as f64);
-    let is_worth_fitting = |own: &Screened| own.gain() > least;
+    let is_worth_fitting = |own: &Screened| own.gain > least;
     if !is_far_off && !screened.iter().any(is_worth_fitting) {
         return Vec::new();
     }

@@ -21,7 +21,7 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
             let explains_little = || is_enough() || explained() < evidence.numbers.explained();
             let changes_little = !sets[part].names().is_empty() && explains_little();
             let fails = has_held_out && (changes_little || !predicts_better(&sets[best], &sets[part], evidence));
-            fails || sets[best].adds_effect_at_bound(&sets[part])
+            fails || sets[best].adds_effect_at_bound(&sets[part], evidence)
         };
         match most_probable(sets, (0..sets.len()).filter(is_answer).filter(withdrawn)) {
             Some(part) => best = part,

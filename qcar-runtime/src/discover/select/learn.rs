@@ -91,7 +91,8 @@ fn most_probable_law(
     // At its start values a law changes the model little, so a screening could not rank the laws.
     let unchanged = |candidate: usize| Screened {
         candidate,
-        starts: vec![(here.clone(), 0.0)],
+        gain: 0.0,
+        starts: vec![here.clone()],
         unscreened: None,
     };
     let all: Vec<Screened> = (0..laws.len()).map(unchanged).collect();

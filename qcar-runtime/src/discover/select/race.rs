@@ -116,12 +116,8 @@ pub fn race(
     let mut field: Vec<Runner<'_>> = Vec::new();
     for (own, hypothesis) in entering.iter().zip(&hypotheses) {
         let Some(hypothesis) = hypothesis else { continue };
-        let starts = if field.len() < WITH_ALL_STARTS {
-            own.starts.len()
-        } else {
-            1
-        };
-        let starts = own.starts[..starts].iter().map(|(place, _)| place);
+        let most = if field.len() < WITH_ALL_STARTS { usize::MAX } else { 1 };
+        let starts = own.starts.iter().take(most);
         field.extend(starts.chain(&own.unscreened).map(|place| Runner {
             candidate: own.candidate,
             hypothesis,
@@ -163,7 +159,7 @@ pub fn entrants<'p>(candidates: &[Candidate], screened: &'p [Screened]) -> Vec<&
         let own = &candidates[entry.candidate];
         (own.effect.as_str(), own.at.as_str())
     };
-    let gaining = screened.iter().filter(|entry| entry.gain() > 0.0);
+    let gaining = screened.iter().filter(|entry| entry.gain > 0.0);
     let gaining: HashSet<_> = gaining.map(effect).collect();
     let (mut places, mut forms) = (HashSet::new(), HashSet::new());
     let enters = |(rank, entry): &(usize, &Screened)| {
@@ -260,6 +256,7 @@ mod tests {
             range: (-1.0, 1.0),
             known: false,
             role: ParameterRole::Shape,
+            scales_force: false,
         };
         Candidate {
             effect: effect.into(),
@@ -302,7 +299,8 @@ mod tests {
         let (candidates, gains): (Vec<Candidate>, Vec<f64>) = all.unzip();
         let entry = |(candidate, gain)| Screened {
             candidate,
-            starts: vec![(Place::default(), gain)],
+            gain,
+            starts: vec![Place::default()],
             unscreened: None,
         };
         let screened: Vec<Screened> = gains.into_iter().enumerate().map(entry).collect();

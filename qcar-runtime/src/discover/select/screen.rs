@@ -3,7 +3,7 @@
 //! A candidate at given values changes the residuals by `g`. The part of `g` that changes of the other unknowns can
 //! reproduce is projected out, and the rest is compared with the projected residual. This is the score test of C. R.
 //! Rao (Proc. Cambridge Phil. Soc. 44, 1948) with a finite step. The magnitude of the effect is scaled to its largest
-//! gain; its shape parameters are tried on a grid.
+//! gain; its shape parameters are tried on a grid. Fits start where the true gain is largest.
 
 use std::collections::BTreeMap;
 
@@ -21,8 +21,10 @@ use crate::discover::posterior::Refit;
 pub struct Screened {
     /// Its position among the candidates.
     pub candidate: usize,
-    /// Start points, best first, each with its predicted gain in log likelihood.
-    pub starts: Vec<(Place, f64)>,
+    /// Largest gain in log likelihood, to first order.
+    pub gain: f64,
+    /// Start points, best first.
+    pub starts: Vec<Place>,
     /// A further start point, which the screening has not assessed.
     pub unscreened: Option<Place>,
 }
@@ -33,15 +35,12 @@ impl Screened {
         let hypothesis = assembly.hypothesis_with(candidate);
         self.unscreened = hypothesis.map(|own| Point::at_start(candidate).at(place, &own, candidate));
     }
-
-    /// Predicted gain of the best start in log likelihood; 0 without a start.
-    pub fn gain(&self) -> f64 {
-        self.starts.first().map_or(0.0, |start| start.1)
-    }
 }
 
 /// Number of starts of a candidate that are kept.
 const STARTS: usize = 3;
+/// Number of grid points of a candidate, those with the largest gain to first order, at which its true gain is computed.
+const VERIFIED: usize = 8;
 /// Grid of a single shape parameter: shares of the way to its bounds.
 const SHAPES: &[f64] = &[0.0, -0.2, 0.2, -0.4, 0.4, -0.6, 0.6, -0.8, 0.8];
 /// Grid of each of several shape parameters of a linear model, which is cheap to predict.
@@ -53,37 +52,97 @@ const OTHERS: [f64; 2] = [-0.5, 0.5];
 
 /// Screens all candidates; the largest gain comes first. Leaves out those that cannot be predicted.
 pub fn screen(assembly: &Assembly, candidates: &[Candidate], refit: &Refit, evidence: &Evidence) -> Vec<Screened> {
-    let here = assembly.hypothesis().place(refit);
-    let tangent = Tangent::new(refit, assembly, evidence);
-    let without = tangent.gain_without_candidate();
-    let all = candidates.par_iter().enumerate().filter_map(|(place, candidate)| {
-        let hypothesis = assembly.hypothesis_with(candidate)?;
-        let tried = grid(candidate).into_par_iter().filter_map(|point| {
-            let from = point.at(&here, &hypothesis, candidate);
-            let values = hypothesis.values(&from.named).ok()?;
-            let (nuisance, coefficients) = hypothesis.nuisance_at(refit, &from);
-            let nuisance = (nuisance, coefficients.as_slice());
-            let there = refit.residuals_of(hypothesis.model(), &values, nuisance, assembly.model(), evidence)?;
-            let step = tangent.step(&there, point.scales(candidate))?;
-            let scaled = Point {
-                scale: step.scale,
-                ..point
-            };
-            let gain = step.gain.max(tangent.gain_with_discrepancy(&there, &step) - without);
-            Some((scaled.at(&here, &hypothesis, candidate), gain))
-        });
-        let mut starts: Vec<(Place, f64)> = tried.collect();
-        starts.sort_by(|a, b| b.1.total_cmp(&a.1));
-        starts.truncate(STARTS);
-        (!starts.is_empty()).then_some(Screened {
+    let screening = Screening::new(assembly, refit, evidence);
+    let screened = |(place, candidate)| screening.of(place, candidate);
+    let mut all: Vec<Screened> = candidates.par_iter().enumerate().filter_map(screened).collect();
+    all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    all
+}
+
+/// A fit whose residual the candidates may explain.
+struct Screening<'a> {
+    assembly: &'a Assembly,
+    refit: &'a Refit,
+    evidence: &'a Evidence,
+    /// The fit as a start point.
+    here: Place,
+    tangent: Tangent,
+    /// Gain of the present unknowns and the discrepancy on this evidence, without a candidate.
+    without: f64,
+}
+
+/// A grid point of a candidate, scaled to its largest gain to first order.
+struct Trial {
+    point: Point,
+    /// Change of all other unknowns along with it.
+    unknowns: DVector<f64>,
+    gain: f64,
+}
+
+impl<'a> Screening<'a> {
+    fn new(assembly: &'a Assembly, refit: &'a Refit, evidence: &'a Evidence) -> Self {
+        let tangent = Tangent::new(refit, assembly, evidence);
+        Self {
+            assembly,
+            refit,
+            evidence,
+            here: assembly.hypothesis().place(refit),
+            without: tangent.gain_without_candidate(),
+            tangent,
+        }
+    }
+
+    /// `None` if the candidate cannot be predicted or can be imitated by the present unknowns.
+    fn of(&self, place: usize, candidate: &Candidate) -> Option<Screened> {
+        let hypothesis = self.assembly.hypothesis_with(candidate)?;
+        let tried = grid(candidate).into_par_iter();
+        let mut trials: Vec<Trial> = tried
+            .filter_map(|point| self.trial(point, &hypothesis, candidate))
+            .collect();
+        trials.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        let gain = trials.first()?.gain;
+        trials.truncate(VERIFIED);
+        Some(Screened {
             candidate: place,
-            starts,
+            gain,
+            starts: self.starts(&trials, &hypothesis, candidate),
             unscreened: None,
         })
-    });
-    let mut all: Vec<Screened> = all.collect();
-    all.sort_by(|a, b| b.gain().total_cmp(&a.gain()));
-    all
+    }
+
+    fn trial(&self, point: Point, hypothesis: &Hypothesis<'_>, candidate: &Candidate) -> Option<Trial> {
+        let from = point.at(&self.here, hypothesis, candidate);
+        let there = hypothesis.residuals_at(&from, self.refit, self.evidence)?;
+        let step = self.tangent.step(&there, point.scales(candidate))?;
+        let with_discrepancy = self.tangent.gain_to_first_order(&there, &step) - self.without;
+        Some(Trial {
+            point: Point {
+                scale: step.scale,
+                ..point
+            },
+            gain: step.gain.max(with_discrepancy),
+            unknowns: step.unknowns,
+        })
+    }
+
+    /// The trials with the largest true gain. The first-order gain supposes that all other unknowns change along, so a
+    /// start changes them too if it then gains more.
+    fn starts(&self, trials: &[Trial], hypothesis: &Hypothesis<'_>, candidate: &Candidate) -> Vec<Place> {
+        let start = |trial: &Trial, unknowns: &DVector<f64>| {
+            let here = self.here.changed_by(unknowns, self.refit, self.assembly.model());
+            let place = trial.point.at(&here, hypothesis, candidate);
+            let residual = hypothesis.residuals_at(&place, self.refit, self.evidence)?;
+            Some((place, self.tangent.gain_at(&residual, unknowns)))
+        };
+        let better = |trial: &Trial| {
+            let unchanged = DVector::zeros(trial.unknowns.len());
+            let both = [&trial.unknowns, &unchanged].map(|unknowns| start(trial, unknowns));
+            both.into_iter().flatten().max_by(|a, b| a.1.total_cmp(&b.1))
+        };
+        let mut starts: Vec<(Place, f64)> = trials.par_iter().filter_map(better).collect();
+        starts.sort_by(|a, b| b.1.total_cmp(&a.1));
+        starts.into_iter().take(STARTS).map(|(place, _)| place).collect()
+    }
 }
 
 /// A fit, linearised: residuals, Jacobian and the derived quantities of the score test.
@@ -177,14 +236,26 @@ impl Tangent {
             gain: 0.0,
         };
         let here = self.residual.rows(0, self.data).into_owned();
-        self.gain_with_discrepancy(&here, &step).max(0.0)
+        self.gain_to_first_order(&here, &step).max(0.0)
     }
 
-    /// Gain of a step in log posterior density, with the discrepancy learned again from the remaining residual.
-    fn gain_with_discrepancy(&self, there: &DVector<f64>, step: &Step) -> f64 {
+    /// Gain of a step in log posterior density to first order.
+    fn gain_to_first_order(&self, there: &DVector<f64>, step: &Step) -> f64 {
         let mut residual = &self.residual + &self.jacobian * &step.unknowns;
         let change = there - self.residual.rows(0, self.data);
         residual.rows_mut(0, self.data).axpy(step.scale, &change, 1.0);
+        self.gain_of(residual)
+    }
+
+    /// Gain in log posterior density at data residuals of a hypothesis with the other unknowns changed.
+    fn gain_at(&self, there: &DVector<f64>, unknowns: &DVector<f64>) -> f64 {
+        let mut residual = &self.residual + &self.jacobian * unknowns;
+        residual.rows_mut(0, self.data).copy_from(there);
+        self.gain_of(residual)
+    }
+
+    /// Gain in log posterior density, with the discrepancy learned again from the remaining residual.
+    fn gain_of(&self, mut residual: DVector<f64>) -> f64 {
         if !residual.iter().all(|value| value.is_finite()) {
             return f64::NEG_INFINITY;
         }
@@ -216,9 +287,10 @@ impl Point {
     pub fn at(&self, here: &Place, hypothesis: &Hypothesis<'_>, candidate: &Candidate) -> Place {
         let mut there = here.clone();
         let parameters = candidate.parameters().iter().zip(&self.shifts);
+        let scales_force = candidate.parameters().iter().any(is_force_strength);
         let values: BTreeMap<String, f64> = parameters
             .filter(|(own, _)| !own.known)
-            .map(|(own, &shift)| (own.name.clone(), self.scaled_strength(own, shifted(own, shift))))
+            .map(|(own, &shift)| (own.name.clone(), self.scaled(own, shifted(own, shift), scales_force)))
             .collect();
         match &candidate.change {
             Change::Sensor { form, parameter, .. } => {
@@ -230,14 +302,14 @@ impl Point {
         there
     }
 
-    fn scaled_strength(&self, own: &Added, value: f64) -> f64 {
-        let ParameterRole::Strength { vanishes_at } = own.role else {
-            return value;
-        };
-        let scaled = if vanishes_at.is_infinite() {
-            value / self.scale
-        } else {
-            vanishes_at + self.scale * (value - vanishes_at)
+    /// A value at the scale of this point. If the strength is a mass, stiffness, damping or force, so that the force of
+    /// the effect `scales` with it, all such parameters change along: then its frequencies, travels and speeds stay.
+    fn scaled(&self, own: &Added, value: f64, scales: bool) -> f64 {
+        let scaled = match own.role {
+            ParameterRole::Strength { vanishes_at } if vanishes_at.is_infinite() => value / self.scale,
+            ParameterRole::Strength { vanishes_at } => vanishes_at + self.scale * (value - vanishes_at),
+            _ if scales && own.scales_force => value * self.scale,
+            _ => return value,
         };
         scaled.clamp(own.range.0, own.range.1)
     }
@@ -265,6 +337,12 @@ impl Point {
             (1.0, 1.0)
         }
     }
+}
+
+/// True for a strength in proportion to which the forces of its effect are, if the others of [`Added::scales_force`]
+/// change along.
+fn is_force_strength(own: &Added) -> bool {
+    own.role == ParameterRole::Strength { vanishes_at: 0.0 } && own.scales_force
 }
 
 /// Coefficient of a sensor error: a delay in s, the logarithm of a gain.

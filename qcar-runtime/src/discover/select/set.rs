@@ -142,14 +142,15 @@ impl Set {
             .any(|own| own.unknowns.has_magnitude_at_bound(&self.explanation))
     }
 
-    /// True if an effect that `part` lacks has a magnitude at its bound: it then imitates another effect. If `part` has
-    /// effects, the shape parameters of the additional ones must be inside their ranges too. There is little residual
-    /// left for them, and at the bound of a shape parameter an effect can imitate almost any other.
-    pub fn adds_effect_at_bound(&self, part: &Set) -> bool {
-        let is_further = !part.names().is_empty();
+    /// True if an effect that `part` lacks has a magnitude at its bound: it then imitates another effect. At the bound of
+    /// a shape parameter an effect can imitate almost any other, so these must be inside their ranges too if `part` has
+    /// effects, since little residual is left for further ones, and if this set leaves more than noise, since the model
+    /// is then wrong in another way.
+    pub fn adds_effect_at_bound(&self, part: &Set, evidence: &Evidence) -> bool {
+        let has_other_causes = !part.names().is_empty() || leaves_more_than_noise(self, evidence);
         let is_at_bound = |own: &Placed| {
             own.unknowns.has_magnitude_at_bound(&self.explanation)
-                || is_further && own.unknowns.has_parameter_at_bound(&self.explanation)
+                || has_other_causes && own.unknowns.has_parameter_at_bound(&self.explanation)
         };
         let is_new = |own: &&Placed| !part.names().contains(&own.name());
         self.named().filter(is_new).any(is_at_bound)
