@@ -2,11 +2,11 @@
 
 use rayon::prelude::*;
 
-use super::assembly::Place;
+use super::assembly::{Assembly, Place};
 use super::fidelity::{DECIMATION, Fidelity};
 use super::finite_explanation;
 use super::race::{Dropped, Finalist, entrants, race};
-use super::screen::{Screened, screen};
+use super::screen::{Point, Screened, Screening};
 use super::set::{Set, is_missing};
 use super::{BASE, Progress, Update};
 use crate::discover::answer::Rival;
@@ -92,6 +92,12 @@ impl SearchStart {
     }
 }
 
+/// A start at `place` with the default values of the candidate.
+fn start_from(place: &Place, assembly: &Assembly, candidate: &Candidate) -> Option<Place> {
+    let hypothesis = assembly.hypothesis_with(candidate)?;
+    Some(Point::at_start(candidate).at(place, &hypothesis, candidate))
+}
+
 fn extended(
     set: &Set,
     candidates: &[Candidate],
@@ -101,17 +107,12 @@ fn extended(
     progress: Progress<'_>,
 ) -> Vec<Set> {
     let SearchStart { fidelity, refit } = start;
-    let mut screened = screen(&set.assembly, candidates, refit, &fidelity.coarse);
+    let screening = Screening::new(&set.assembly, refit, &fidelity.coarse);
+    let screened = screening.of(candidates);
     // A model with a large residual has poor parameters, which makes a first-order gain unreliable. So the candidates
     // are fitted whatever their gain, unless a learned law explains that residual. Those of the base model also start
     // from the given values; sets with effects have already been fitted from there.
     let is_far_off = lead == 0.0 && is_missing(set, evidence);
-    if is_far_off && set.names().is_empty() {
-        let given = Place::given(&fidelity.coarse);
-        for own in &mut screened {
-            own.start_from(&given, &set.assembly, &candidates[own.candidate]);
-        }
-    }
     let least = (candidates.len() as f64 / evidence.numbers.false_alarms).ln();
     // The screening uses every sixth line only, while the lead counts all lines.
     let least = least.max(lead / DECIMATION[0] as f64);
@@ -119,7 +120,14 @@ fn extended(
     if !is_far_off && !screened.iter().any(is_worth_fitting) {
         return Vec::new();
     }
-    let entering = entrants(candidates, &screened);
+    let mut entering = screening.with_starts(&entrants(candidates, &screened), candidates);
+    if is_far_off && set.names().is_empty() {
+        let given = Place::given(&fidelity.coarse);
+        for own in &mut entering {
+            own.starts
+                .extend(start_from(&given, &set.assembly, &candidates[own.candidate]));
+        }
+    }
     let (finalists, dropped) = race(&set.assembly, candidates, &entering, fidelity, progress);
     let of_finalist = |finalist: Finalist| {
         let candidate = &candidates[finalist.candidate];

@@ -7,7 +7,7 @@ use super::assembly::Placed;
 use super::extend::{SearchStart, explains_fitted};
 use super::held_out::predicts_better;
 use super::race::{Finalist, race};
-use super::screen::Screened;
+use super::screen::Entrant;
 use super::set::{Set, explained_share, is_missing};
 use super::{Progress, Update, finite_explanation, without};
 use crate::discover::answer::{Finding, Learned};
@@ -89,14 +89,11 @@ fn most_probable_law(
 ) -> Option<Set> {
     let here = set.assembly.hypothesis().place(&start.refit);
     // At its start values a law changes the model little, so a screening could not rank the laws.
-    let unchanged = |candidate: usize| Screened {
+    let unchanged = |candidate: usize| Entrant {
         candidate,
-        gain: 0.0,
         starts: vec![here.clone()],
-        unscreened: None,
     };
-    let all: Vec<Screened> = (0..laws.len()).map(unchanged).collect();
-    let entering: Vec<&Screened> = all.iter().collect();
+    let entering: Vec<Entrant> = (0..laws.len()).map(unchanged).collect();
     let (finalists, _) = race(&set.assembly, laws, &entering, &start.fidelity, progress);
     let prior = set.log_prior - (laws.len() as f64).ln() + set.odds_of_another(&evidence.numbers).ln();
     let fitted = finalists.into_par_iter().filter_map(|Finalist { candidate, refit }| {

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::assembly::{Assembly, Hypothesis, Place};
 use super::fidelity::Fidelity;
-use super::screen::Screened;
+use super::screen::{Entrant, Screened};
 use super::{BEAM, Progress, Update};
 use crate::discover::candidate::Candidate;
 use crate::discover::observe::Evidence;
@@ -53,9 +53,6 @@ const ROUNDS: [Round; 4] = [
     },
 ];
 
-/// Number of runners up to which a candidate enters with all its starts; further candidates enter with their best
-/// start.
-const WITH_ALL_STARTS: usize = 9;
 /// Log evidence difference up to which a candidate stays before the last round, whatever its search gained: odds of one
 /// to twenty thousand.
 const NOT_SEPARATED: f64 = 10.0;
@@ -105,7 +102,7 @@ impl Runner<'_> {
 pub fn race(
     assembly: &Assembly,
     candidates: &[Candidate],
-    entering: &[&Screened],
+    entering: &[Entrant],
     fidelity: &Fidelity,
     progress: Progress<'_>,
 ) -> (Vec<Finalist>, Vec<Dropped>) {
@@ -113,18 +110,19 @@ pub fn race(
         .iter()
         .map(|own| assembly.hypothesis_with(&candidates[own.candidate]))
         .collect();
-    let mut field: Vec<Runner<'_>> = Vec::new();
-    for (own, hypothesis) in entering.iter().zip(&hypotheses) {
-        let Some(hypothesis) = hypothesis else { continue };
-        let most = if field.len() < WITH_ALL_STARTS { usize::MAX } else { 1 };
-        let starts = own.starts.iter().take(most);
-        field.extend(starts.chain(&own.unscreened).map(|place| Runner {
+    let runners = entering.iter().zip(&hypotheses).flat_map(|(own, hypothesis)| {
+        let runner = |(hypothesis, place): (_, &Place)| Runner {
             candidate: own.candidate,
             hypothesis,
             place: place.clone(),
             refit: None,
-        }));
-    }
+        };
+        let starts = hypothesis
+            .iter()
+            .flat_map(|hypothesis| own.starts.iter().map(move |place| (hypothesis, place)));
+        starts.map(runner)
+    });
+    let mut field: Vec<Runner<'_>> = runners.collect();
     let mut dropped = Vec::new();
     for (number, round) in ROUNDS.iter().enumerate() {
         progress(Update::Done(number, ROUNDS.len()));
@@ -242,7 +240,6 @@ fn best<'a>(
 
 #[cfg(test)]
 mod tests {
-    use super::super::assembly::Place;
     use super::{ENTRANTS, entrants};
     use crate::discover::candidate::{Added, Candidate, Change, ParameterRole};
     use crate::discover::noise::Form;
@@ -300,8 +297,7 @@ mod tests {
         let entry = |(candidate, gain)| Screened {
             candidate,
             gain,
-            starts: vec![Place::default()],
-            unscreened: None,
+            trials: Vec::new(),
         };
         let screened: Vec<Screened> = gains.into_iter().enumerate().map(entry).collect();
         let later = entrants(&candidates, &screened).into_iter().skip(ENTRANTS);

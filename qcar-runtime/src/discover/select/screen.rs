@@ -17,30 +17,29 @@ use crate::discover::noise::{Discrepancy, Form};
 use crate::discover::observe::Evidence;
 use crate::discover::posterior::Refit;
 
-/// A candidate with the start points of its fits.
+/// A candidate with its gain.
 pub struct Screened {
     /// Its position among the candidates.
     pub candidate: usize,
     /// Largest gain in log likelihood, to first order.
     pub gain: f64,
-    /// Start points, best first.
+    /// Its grid points with the largest gains, best first.
+    pub trials: Vec<Trial>,
+}
+
+/// A candidate with the start points of its fits, best first.
+pub struct Entrant {
+    /// Its position among the candidates.
+    pub candidate: usize,
     pub starts: Vec<Place>,
-    /// A further start point, which the screening has not assessed.
-    pub unscreened: Option<Place>,
 }
 
-impl Screened {
-    /// Adds a start at `place` with the default values of the candidate.
-    pub fn start_from(&mut self, place: &Place, assembly: &Assembly, candidate: &Candidate) {
-        let hypothesis = assembly.hypothesis_with(candidate);
-        self.unscreened = hypothesis.map(|own| Point::at_start(candidate).at(place, &own, candidate));
-    }
-}
-
-/// Number of starts of a candidate that are kept.
+/// Number of candidates, those with the largest gain, that start from several points.
+const WITH_ALL_STARTS: usize = 3;
+/// Number of start points of such a candidate. The others have one.
 const STARTS: usize = 3;
-/// Number of grid points of a candidate, those with the largest gain to first order, at which its true gain is computed.
-const VERIFIED: usize = 8;
+/// Number of grid points per start at which the true gain is computed: those with the largest gain to first order.
+const VERIFIED: usize = 3;
 /// Grid of a single shape parameter: shares of the way to its bounds.
 const SHAPES: &[f64] = &[0.0, -0.2, 0.2, -0.4, 0.4, -0.6, 0.6, -0.8, 0.8];
 /// Grid of each of several shape parameters of a linear model, which is cheap to predict.
@@ -50,17 +49,8 @@ const FEW_SHAPES: &[f64] = &[0.0, -0.5, 0.5];
 /// Grid of every other free parameter.
 const OTHERS: [f64; 2] = [-0.5, 0.5];
 
-/// Screens all candidates; the largest gain comes first. Leaves out those that cannot be predicted.
-pub fn screen(assembly: &Assembly, candidates: &[Candidate], refit: &Refit, evidence: &Evidence) -> Vec<Screened> {
-    let screening = Screening::new(assembly, refit, evidence);
-    let screened = |(place, candidate)| screening.of(place, candidate);
-    let mut all: Vec<Screened> = candidates.par_iter().enumerate().filter_map(screened).collect();
-    all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    all
-}
-
 /// A fit whose residual the candidates may explain.
-struct Screening<'a> {
+pub struct Screening<'a> {
     assembly: &'a Assembly,
     refit: &'a Refit,
     evidence: &'a Evidence,
@@ -72,7 +62,7 @@ struct Screening<'a> {
 }
 
 /// A grid point of a candidate, scaled to its largest gain to first order.
-struct Trial {
+pub struct Trial {
     point: Point,
     /// Change of all other unknowns along with it.
     unknowns: DVector<f64>,
@@ -80,7 +70,8 @@ struct Trial {
 }
 
 impl<'a> Screening<'a> {
-    fn new(assembly: &'a Assembly, refit: &'a Refit, evidence: &'a Evidence) -> Self {
+    /// Screens candidates for a fit to this evidence.
+    pub fn new(assembly: &'a Assembly, refit: &'a Refit, evidence: &'a Evidence) -> Self {
         let tangent = Tangent::new(refit, assembly, evidence);
         Self {
             assembly,
@@ -92,21 +83,27 @@ impl<'a> Screening<'a> {
         }
     }
 
+    /// All candidates; the largest gain comes first. Leaves out those that cannot be predicted.
+    pub fn of(&self, candidates: &[Candidate]) -> Vec<Screened> {
+        let screened = |(place, candidate)| self.screened(place, candidate);
+        let mut all: Vec<Screened> = candidates.par_iter().enumerate().filter_map(screened).collect();
+        all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        all
+    }
+
     /// `None` if the candidate cannot be predicted or can be imitated by the present unknowns.
-    fn of(&self, place: usize, candidate: &Candidate) -> Option<Screened> {
+    fn screened(&self, place: usize, candidate: &Candidate) -> Option<Screened> {
         let hypothesis = self.assembly.hypothesis_with(candidate)?;
         let tried = grid(candidate).into_par_iter();
         let mut trials: Vec<Trial> = tried
             .filter_map(|point| self.trial(point, &hypothesis, candidate))
             .collect();
         trials.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-        let gain = trials.first()?.gain;
-        trials.truncate(VERIFIED);
+        trials.truncate(STARTS * VERIFIED);
         Some(Screened {
             candidate: place,
-            gain,
-            starts: self.starts(&trials, &hypothesis, candidate),
-            unscreened: None,
+            gain: trials.first()?.gain,
+            trials,
         })
     }
 
@@ -125,12 +122,27 @@ impl<'a> Screening<'a> {
         })
     }
 
+    /// These candidates with the start points of their fits.
+    pub fn with_starts(&self, entering: &[&Screened], candidates: &[Candidate]) -> Vec<Entrant> {
+        let entrant = |(rank, own): (usize, &&Screened)| {
+            let count = if rank < WITH_ALL_STARTS { STARTS } else { 1 };
+            Entrant {
+                candidate: own.candidate,
+                starts: self.starts(&own.trials, &candidates[own.candidate], count),
+            }
+        };
+        entering.par_iter().enumerate().map(entrant).collect()
+    }
+
     /// The trials with the largest true gain. The first-order gain supposes that all other unknowns change along, so a
     /// start changes them too if it then gains more.
-    fn starts(&self, trials: &[Trial], hypothesis: &Hypothesis<'_>, candidate: &Candidate) -> Vec<Place> {
+    fn starts(&self, trials: &[Trial], candidate: &Candidate, count: usize) -> Vec<Place> {
+        let Some(hypothesis) = self.assembly.hypothesis_with(candidate) else {
+            return Vec::new();
+        };
         let start = |trial: &Trial, unknowns: &DVector<f64>| {
             let here = self.here.changed_by(unknowns, self.refit, self.assembly.model());
-            let place = trial.point.at(&here, hypothesis, candidate);
+            let place = trial.point.at(&here, &hypothesis, candidate);
             let residual = hypothesis.residuals_at(&place, self.refit, self.evidence)?;
             Some((place, self.tangent.gain_at(&residual, unknowns)))
         };
@@ -139,9 +151,10 @@ impl<'a> Screening<'a> {
             let both = [&trial.unknowns, &unchanged].map(|unknowns| start(trial, unknowns));
             both.into_iter().flatten().max_by(|a, b| a.1.total_cmp(&b.1))
         };
-        let mut starts: Vec<(Place, f64)> = trials.par_iter().filter_map(better).collect();
+        let trials = trials.par_iter().take(count * VERIFIED);
+        let mut starts: Vec<(Place, f64)> = trials.filter_map(better).collect();
         starts.sort_by(|a, b| b.1.total_cmp(&a.1));
-        starts.into_iter().take(STARTS).map(|(place, _)| place).collect()
+        starts.into_iter().take(count).map(|(place, _)| place).collect()
     }
 }
 
