@@ -105,8 +105,10 @@ fn tdms() {
             "tdms/int16_linear_scale_time_channel.tdms",
             "tdms/big_endian_interleaved.tdms",
             "tdms/daqmx_two_widths.tdms",
+            "tdms/time_stamps.tdms",
+            "tdms/big_endian_time_stamps.tdms",
         ],
-        6000,
+        9000,
     );
 }
 
@@ -118,8 +120,10 @@ fn mat() {
             "mat/matlab65_struct_v6.mat",
             "mat/labcontrol_ensaio_A1.mat",
             "mat/scipy_structures.mat",
+            "mat/scipy_v4.mat",
+            "mat/matlab42_big_endian_v4.mat",
         ],
-        4000,
+        6000,
     );
     survives(
         &["mat/testlab_v73.mat", "mat/matlab74_double_v73.mat", "mat/h5py_odd.h5"],
@@ -233,6 +237,11 @@ fn ten_gigabytes_that_are_only_claimed_take_no_memory() {
     refused(
         &claiming("mat/matlab65_struct_v6.mat", field + 4, &many.to_le_bytes()[..4]),
         &["1250000000 bytes", "doublefield"],
+    );
+
+    refused(
+        &claiming("mat/scipy_v4.mat", 4, &many.to_le_bytes()[..4]),
+        &["10000000000 bytes of numbers", "channel `t`"],
     );
 
     let file = sample("mat/matlab74_double_v73.mat");

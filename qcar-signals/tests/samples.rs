@@ -319,6 +319,17 @@ fn mat() {
             "2 variables before it are whole: Signal_0, Signal_1",
         ],
     );
+    let fault = fault_of_cut("mat/scipy_v4.mat", 5000);
+    says(
+        &fault,
+        &[
+            "`acc`",
+            "3200 bytes",
+            "1754 bytes",
+            "cut off",
+            "the variable before it is whole: t",
+        ],
+    );
 }
 
 #[test]
