@@ -64,16 +64,22 @@ pub(crate) fn read(bytes: Bytes, wanted: &Wanted) -> Read<Recording> {
 fn segment<'a>(file: &Bytes<'a>, at: u64, length: u64, raw: u64, number: u32) -> Read<Bytes<'a>> {
     let there = file.len() - at - LEAD_IN;
     if length > there {
-        let promised = match length {
-            u64::MAX => "an end that its writer never noted".into(),
-            _ => format!("{} bytes of data", length.saturating_sub(raw)),
-        };
         let found = format!(
             "{} bytes of data in segment {number}{}",
             there.saturating_sub(raw),
             whole_before(number as usize - 1, "segment")
         );
-        return Err(Fault::cut_off(Place::Byte(at), found, promised));
+        return Err(match length {
+            u64::MAX => {
+                let expected = "a segment whose length was written when it was finished";
+                let remedy = "the recording was interrupted: open and save the file in the program that recorded it";
+                Fault::new(Place::Byte(at), found, expected, remedy)
+            }
+            _ => {
+                let declared = format!("{} bytes of data", length.saturating_sub(raw));
+                Fault::cut_off(Place::Byte(at), found, declared)
+            }
+        });
     }
     file.part(at + LEAD_IN, length, "a segment")
 }
@@ -164,8 +170,8 @@ impl File {
                 remedy,
             ));
         }
-        let chunk =
-            metadata::chunk(&used).ok_or_else(|| Fault::damaged(place.clone(), "sizes without end", "sizes"))?;
+        let chunk = metadata::chunk(&used)
+            .ok_or_else(|| Fault::damaged(place.clone(), "sizes that overflow", "sizes within the segment"))?;
         if chunk == 0 || length % chunk != 0 {
             if length == 0 {
                 return Ok(());

@@ -176,8 +176,8 @@ fn numbers(data: &Bytes, at: u64, dimensions: Vec<u64>) -> Read<Array> {
         }
     };
     let numbers = number.all_of(&element.data, "numbers")?;
-    let promised = dimensions.iter().try_fold(1_u64, |all, &size| all.checked_mul(size));
-    if promised != Some(numbers.len() as u64) {
+    let declared = dimensions.iter().try_fold(1_u64, |all, &size| all.checked_mul(size));
+    if declared != Some(numbers.len() as u64) {
         let sizes: Vec<String> = dimensions.iter().map(u64::to_string).collect();
         let found = format!("{} numbers", numbers.len());
         return Err(Fault::damaged(
