@@ -19,8 +19,8 @@ pub fn given() -> Option<u64> {
     Some(given.saturating_mul(1 << 20))
 }
 
-/// The most bytes to which a file with so many packed bytes may unpack: the limit of the user, otherwise 64 times as many
-/// and at least 256 MiB.
+/// The most bytes to which a file with so many packed bytes may unpack: the limit of the user, otherwise 64 times as
+/// many and at least 256 MiB.
 pub fn of_unpacked(packed: u64) -> u64 {
     given().unwrap_or_else(|| ALWAYS.max(PER_BYTE.saturating_mul(packed)))
 }

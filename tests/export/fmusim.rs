@@ -1,5 +1,5 @@
-//! Exported units in fmusim, the FMI project's own importer (modelica/Reference-FMUs). It reads the model description with
-//! its schema and its rules, then calls the unit in the order of the standard.
+//! Exported units in fmusim, the FMI project's own importer (modelica/Reference-FMUs). It checks the model description
+//! against the schema and the rules of the standard, then calls the unit in the order of the standard.
 //!
 //! It is the program in `FMUSIM`, or `fmusim` on the PATH.
 
@@ -84,8 +84,8 @@ fn fmusim_refuses_what_is_against_the_standard() {
     }
 }
 
-/// Co-Simulation along the inputs of [`Subject`], held from sample to sample; Model Exchange after a step of the inputs at
-/// its start, since the integrator of fmusim steps past the time of an input and interpolates.
+/// Co-Simulation along the inputs of [`Subject`], held from sample to sample; Model Exchange after a step of the inputs
+/// at its start, since the integrator of fmusim steps past the time of an input and interpolates.
 fn compare(model: &str, params: Option<&str>, changed: Option<(&str, f64)>) {
     let Some(fmusim) = fmusim() else { return };
     let folder = tempfile::tempdir().unwrap();
