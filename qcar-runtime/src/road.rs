@@ -45,7 +45,7 @@ pub enum RoadError {
     TooFew { found: usize },
     #[error("x, z and slope must be columns of one length, found {x}, {z} and {slope} values")]
     Lengths { x: usize, z: usize, slope: usize },
-    #[error("{column} of sample {sample} is {value}; expected a finite number")]
+    #[error("{column} of sample {sample} is {value}, no finite number")]
     NotFinite {
         column: &'static str,
         sample: usize,
@@ -57,7 +57,7 @@ pub enum RoadError {
         shown(*.x, "m")
     )]
     NotMonotonic { sample: usize, before: f64, x: f64 },
-    #[error("all points of the road lie at x = {}; expected a road with a length", shown(*.x, "m"))]
+    #[error("all points of the road lie at x = {}, so it has no length", shown(*.x, "m"))]
     NoLength { x: f64 },
     #[error("slope {slope} at x = {} contradicts the heights there, which rise by {rise}", shown(*.x, "m"))]
     SlopeContradictsHeight { x: f64, slope: f64, rise: f64 },

@@ -102,16 +102,33 @@ pub struct Change {
 
 /// Reason why numbers are no tyre.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("found {}, expected {}", self.found(), self.expected())]
 #[expect(missing_docs, reason = "the message says it")]
 pub enum TyreError {
-    #[error("the tyre's radius is {}; expected a positive number", shown(*.radius, "m"))]
     Radius { radius: f64 },
-    #[error(
-        "the static deflection is {}; expected more than 0 and less than the radius, {}",
-        shown(*.deflection, "m"),
-        shown(*.radius, "m")
-    )]
     StaticDeflection { deflection: f64, radius: f64 },
+}
+
+impl TyreError {
+    /// What was found.
+    pub fn found(&self) -> String {
+        match self {
+            TyreError::Radius { radius } => format!("a tyre's radius of {}", shown(*radius, "m")),
+            TyreError::StaticDeflection { deflection, .. } => {
+                format!("a static deflection of {}", shown(*deflection, "m"))
+            }
+        }
+    }
+
+    /// What was expected.
+    pub fn expected(&self) -> String {
+        match self {
+            TyreError::Radius { .. } => "more than 0".into(),
+            TyreError::StaticDeflection { radius, .. } => {
+                format!("more than 0 and less than the radius, {}", shown(*radius, "m"))
+            }
+        }
+    }
 }
 
 impl Tyre {

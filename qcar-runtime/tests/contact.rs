@@ -525,6 +525,6 @@ fn impossible_tyres_are_refused() {
     let error = Tyre::new(0.3, 0.31, Geometry::Area, Rates::AtStaticDeflection).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "the static deflection is 0.31 m; expected more than 0 and less than the radius, 0.3 m"
+        "found a static deflection of 0.31 m, expected more than 0 and less than the radius, 0.3 m"
     );
 }

@@ -154,7 +154,7 @@ mod tests {
     use super::{Content, PAGE};
 
     #[test]
-    fn what_is_on_the_disk_is_what_would_be_in_memory() {
+    fn a_range_of_a_file_on_disk_is_that_in_memory() {
         let bytes: Vec<u8> = (0..3 * PAGE + 100).map(|at| (at * at % 251) as u8).collect();
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("bytes");

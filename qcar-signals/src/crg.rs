@@ -36,7 +36,7 @@ pub(crate) fn is_crg(bytes: &[u8]) -> bool {
 /// Reads a road.
 pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
     let header = Header::read(bytes)?;
-    header.refuse_what_is_elsewhere()?;
+    header.refuse_references_and_modifiers()?;
     let columns = columns(&header)?;
     let grid = Grid::read(&bytes[header.end..], columns.len(), &header)?;
     let line = Line::of(&header, &columns, &grid.columns)?;

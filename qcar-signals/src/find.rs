@@ -27,12 +27,12 @@ impl Wanted<'_> {
             Wanted::Summaries => false,
             Wanted::These(patterns) => patterns
                 .iter()
-                .any(|pattern| is_called(pattern, group, name) || is_meant(pattern, group, name)),
+                .any(|pattern| is_called(pattern, group, name) || matches_channel(pattern, group, name)),
         }
     }
 
     /// True if this channel is to be read.
-    pub fn means(&self, signal: &Signal) -> bool {
+    pub fn includes(&self, signal: &Signal) -> bool {
         self.has(&signal.source.group, &signal.name)
     }
 
@@ -61,14 +61,14 @@ impl Recording {
         if exact || passed_over {
             return self.signal(pattern);
         }
-        let fitting: Vec<&Signal> = self.signals.iter().filter(|signal| signal.fits(pattern)).collect();
-        match fitting.as_slice() {
+        let matching: Vec<&Signal> = self.signals.iter().filter(|signal| signal.matches(pattern)).collect();
+        match matching.as_slice() {
             [signal] => Ok(signal),
             [] => Err(self.missing(pattern)),
             several => {
                 let found = format!("{} channels: {}", several.len(), listed(several));
                 let remedy = "write more of the name, or `group/name`";
-                Err(Fault::new(Place::File, found, "one channel that fits", remedy).of(pattern))
+                Err(Fault::new(Place::File, found, "one channel that matches", remedy).of(pattern))
             }
         }
     }
@@ -77,23 +77,23 @@ impl Recording {
     pub fn has(&self, pattern: &str) -> bool {
         let passed_over = self.passed_over.iter().any(|passed| passed.name == pattern);
         let mut signals = self.signals.iter();
-        passed_over || signals.any(|signal| signal.is_called(pattern) || signal.fits(pattern))
+        passed_over || signals.any(|signal| signal.is_called(pattern) || signal.matches(pattern))
     }
 
     fn missing(&self, pattern: &str) -> Box<Fault> {
-        let near = self.near(pattern);
-        let found = match near.as_slice() {
+        let similar = self.similar(pattern);
+        let found = match similar.as_slice() {
             [] => "no channel of this name or a similar one".into(),
-            near => format!("no channel of this name; the nearest are {}", listed(near)),
+            similar => format!("no channel of this name; the nearest are {}", listed(similar)),
         };
         let remedy = "correct the name; `qcar inspect` lists the channels of the file";
         Fault::new(Place::File, found, "a channel of the file", remedy).of(pattern)
     }
 
     /// Channels whose names share at least a third of the letter pairs of a pattern, most similar first.
-    fn near(&self, pattern: &str) -> Vec<&Signal> {
+    fn similar(&self, pattern: &str) -> Vec<&Signal> {
         let wanted = pairs(pattern);
-        let mut near: Vec<(f64, &Signal)> = self
+        let mut similar: Vec<(f64, &Signal)> = self
             .signals
             .iter()
             .map(|signal| {
@@ -101,21 +101,21 @@ impl Recording {
                 let common = wanted.intersection(&own).count() as f64;
                 (2.0 * common / (wanted.len() + own.len()).max(1) as f64, signal)
             })
-            .filter(|(likeness, _)| *likeness > 1.0 / 3.0)
+            .filter(|(similarity, _)| *similarity > 1.0 / 3.0)
             .collect();
-        near.sort_by(|a, b| b.0.total_cmp(&a.0));
-        near.into_iter().map(|(_, signal)| signal).collect()
+        similar.sort_by(|a, b| b.0.total_cmp(&a.0));
+        similar.into_iter().map(|(_, signal)| signal).collect()
     }
 }
 
 impl Signal {
-    fn fits(&self, pattern: &str) -> bool {
-        is_meant(pattern, &self.source.group, &self.name)
+    fn matches(&self, pattern: &str) -> bool {
+        matches_channel(pattern, &self.source.group, &self.name)
     }
 }
 
-fn is_meant(pattern: &str, group: &str, name: &str) -> bool {
-    fits(pattern, name) || fits(pattern, &full_name(group, name))
+fn matches_channel(pattern: &str, group: &str, name: &str) -> bool {
+    matches_pattern(pattern, name) || matches_pattern(pattern, &full_name(group, name))
 }
 
 fn listed(signals: &[&Signal]) -> String {
@@ -139,7 +139,7 @@ fn pairs(name: &str) -> BTreeSet<(char, char)> {
 }
 
 /// True if a name matches a pattern of `*` and `?`.
-fn fits(pattern: &str, name: &str) -> bool {
+fn matches_pattern(pattern: &str, name: &str) -> bool {
     let (pattern, name): (Vec<char>, Vec<char>) = (pattern.chars().collect(), name.chars().collect());
     let (mut at, mut of) = (0, 0);
     // Position to which matching returns if the part after the last `*` fails; the `*` then takes one more character.
@@ -165,10 +165,10 @@ fn fits(pattern: &str, name: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::fits;
+    use super::matches_pattern;
 
     #[test]
-    fn patterns_fit_whole_names() {
+    fn patterns_match_whole_names() {
         for (pattern, name) in [
             ("*Acc_Z", "FL_Body_Acc_Z"),
             ("FL*Z", "FL_Z"),
@@ -176,7 +176,7 @@ mod tests {
             ("*", ""),
             ("*a*b*", "xaxxb"),
         ] {
-            assert!(fits(pattern, name), "{pattern} {name}");
+            assert!(matches_pattern(pattern, name), "{pattern} {name}");
         }
         for (pattern, name) in [
             ("*Acc_Z", "FL_Acc_Z_filtered"),
@@ -185,7 +185,7 @@ mod tests {
             ("", "a"),
             ("*ab", "aab_"),
         ] {
-            assert!(!fits(pattern, name), "{pattern} {name}");
+            assert!(!matches_pattern(pattern, name), "{pattern} {name}");
         }
     }
 }

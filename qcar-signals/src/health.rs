@@ -38,8 +38,8 @@ pub fn flaws(samples: &[f64], drift: bool) -> Vec<Flaw> {
         return dead.into_iter().collect();
     }
     let clipped = [low, high].into_iter().filter_map(|extreme| clipping(samples, extreme));
-    let drift = if drift { running_away(samples) } else { None };
-    clipped.chain(spikes(samples, high - low)).chain(drift).collect()
+    let drifts = if drift { self::drift(samples) } else { None };
+    clipped.chain(spikes(samples, high - low)).chain(drifts).collect()
 }
 
 /// Smallest number of successive extreme samples that are clipped instead of a peak.
@@ -142,7 +142,7 @@ const OF_RMS: f64 = 0.3;
 const SURE: f64 = 8.0;
 
 /// The line through the means of the parts, if they are close to one.
-fn running_away(samples: &[f64]) -> Option<Flaw> {
+fn drift(samples: &[f64]) -> Option<Flaw> {
     let length = samples.len() / PARTS;
     if length < 2 {
         return None;

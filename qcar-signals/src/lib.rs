@@ -19,7 +19,7 @@ pub mod find;
 pub mod resample;
 // Flaws of samples.
 pub mod health;
-// The most that packed data may give.
+// The most that packed data may unpack to.
 pub mod limit;
 // The bytes of a file, in memory or on the disk.
 pub mod content;

@@ -1,4 +1,4 @@
-//! How much packed data may give, so that no small file can fill the memory.
+//! How much packed data may unpack to, so that no small file can fill the memory.
 
 use std::cell::Cell;
 use std::io::Read as _;
@@ -8,9 +8,9 @@ use crate::error::{Fault, Place, Read};
 /// The environment variable with another limit, in MiB.
 pub const VARIABLE: &str = "QCAR_MAX_MIB";
 
-/// Unpacked bytes that any file may give.
+/// Unpacked bytes that are allowed for any file.
 const ALWAYS: u64 = 256 << 20;
-/// Unpacked bytes for each packed byte. Recordings give two to twenty, and dead channels a few hundred.
+/// Unpacked bytes for each packed byte. Recordings have two to twenty, and dead channels a few hundred.
 const PER_BYTE: u64 = 64;
 
 /// The limit that the user has set with [`VARIABLE`], bytes.
@@ -19,13 +19,13 @@ pub fn given() -> Option<u64> {
     Some(given.saturating_mul(1 << 20))
 }
 
-/// The most that a file with so many packed bytes may give: the limit of the user, otherwise 64 times as many and at
-/// least 256 MiB.
+/// The most bytes to which a file with so many packed bytes may unpack: the limit of the user, otherwise 64 times as
+/// many and at least 256 MiB.
 pub fn of_unpacked(packed: u64) -> u64 {
     given().unwrap_or_else(|| ALWAYS.max(PER_BYTE.saturating_mul(packed)))
 }
 
-/// The bytes that the packed parts of a file may still give.
+/// The bytes to which the packed parts of a file may still unpack.
 pub(crate) struct Budget {
     packed: u64,
     most: u64,
@@ -52,12 +52,12 @@ impl Budget {
 
     fn exceeded(&self, place: &Place) -> Box<Fault> {
         let found = format!(
-            "packed data that give more than {} MiB in a file of {} bytes",
+            "packed data that unpack to more than {} MiB in a file of {} bytes",
             self.most >> 20,
             self.packed
         );
         let remedy = format!("if the file is the right one, raise the limit: set {VARIABLE} to a larger number of MiB");
-        Fault::new(place.clone(), found, "at most that", remedy)
+        Fault::new(place.clone(), found, format!("at most {} MiB", self.most >> 20), remedy)
     }
 
     /// Everything that `unpacking` gives; `damaged` is the fault for its error.
@@ -82,7 +82,7 @@ mod tests {
     use super::{ALWAYS, Budget, Place, of_unpacked};
 
     #[test]
-    fn a_file_gives_so_much_in_all_of_its_parts() {
+    fn the_limit_counts_all_packed_parts_of_a_file() {
         assert_eq!(of_unpacked(0), ALWAYS);
         assert_eq!(of_unpacked(ALWAYS), 64 * ALWAYS);
         let budget = Budget::of_file(1000);

@@ -79,7 +79,7 @@ impl Visited {
             return Ok(());
         }
         let found = "a link to a block that was read before";
-        Err(Fault::damaged(Place::Byte(at), found, "links that lead on"))
+        Err(Fault::damaged(Place::Byte(at), found, "links without a loop"))
     }
 
     /// The name of the next group, by which channels of one name are told apart: the first line of the name that the
@@ -173,21 +173,21 @@ impl<'a> Records<'a> {
         data: &'a Data<'a>,
         before: usize,
         stride: usize,
-        promised: u64,
+        declared: u64,
         group: &str,
         place: &Place,
     ) -> Read<Self> {
         let there = data.len().checked_div(stride as u64).unwrap_or(0);
-        if promised > there {
+        if declared > there {
             let found = format!("{there} whole records of {stride} bytes");
-            let expected = format!("{promised} records, as the group `{group}` promises");
+            let expected = format!("{declared} records, as the group `{group}` declares");
             return Err(Fault::cut_off(place.clone(), found, expected));
         }
         Ok(Records {
             data,
             stride,
             before,
-            count: promised as usize,
+            count: declared as usize,
         })
     }
 

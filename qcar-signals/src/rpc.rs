@@ -329,12 +329,12 @@ impl Shape {
             .try_fold(1_usize, |all, &size| all.checked_mul(size))
             .unwrap_or(usize::MAX);
         let groups = self.groups();
-        let promised = group.saturating_mul(groups);
-        if promised == 0 {
+        let declared = group.saturating_mul(groups);
+        if declared == 0 {
             let found = format!("{frames} frames of {points_of_frame} samples, {channels} channels");
             return Err(Fault::damaged(Place::File, found, "at least one sample of one channel"));
         }
-        if promised as u64 <= data.len() {
+        if declared as u64 <= data.len() {
             return Ok(());
         }
         let whole = data.len() as usize / group;
@@ -348,7 +348,7 @@ impl Shape {
         };
         let found = format!("{} bytes of samples, {kept}", data.len());
         let expected =
-            format!("{groups} groups ({frames} frames of {points_of_frame}, {channels} channels, {promised} bytes)");
+            format!("{groups} groups ({frames} frames of {points_of_frame}, {channels} channels, {declared} bytes)");
         Err(Fault::cut_off(data.place(data.len()), found, expected))
     }
 

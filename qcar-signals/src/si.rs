@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_unit_of_mechanics_is_not_converted() {
+    fn units_outside_mechanics_are_not_converted() {
         for unit in [
             "", "V", "mV/g", "counts", "°C", "N//m", "m^x", "s^99999", "-", "/s", "2", "dB", "m/",
         ] {

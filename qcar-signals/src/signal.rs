@@ -263,7 +263,7 @@ impl Steps {
 
     fn fault_of(&self, time: f64) -> Option<String> {
         if !time.is_finite() {
-            return Some("no time".into());
+            return Some("a time that is no finite number".into());
         }
         (self.count > 0 && time < self.last).then(|| format!("the time {time} s after {} s", self.last))
     }
@@ -350,7 +350,7 @@ mod tests {
         }
         for (times, at, found) in [
             ([0.0, 1.0, 0.5], 2, "the time 0.5 s after 1 s"),
-            ([0.0, f64::NAN, 0.5], 1, "no time"),
+            ([0.0, f64::NAN, 0.5], 1, "a time that is no finite number"),
         ] {
             let mut steps = Steps::default();
             times.iter().for_each(|time| steps.add(&[*time]));

@@ -10,13 +10,13 @@ mod scaling;
 
 use std::collections::HashMap;
 
-use crate::bytes::{Bytes, Order};
+use crate::bytes::{Bytes, Order, heads};
 use crate::error::{Fault, Place, Read, whole_before};
 use crate::find::Wanted;
 use crate::signal::{Recording, Signal, Source, TimeBase, evenly};
 use crate::units::{in_seconds, is_time, name_and_unit, seconds};
 
-use metadata::{Index, Layout, Properties, Scaler, object};
+use metadata::{Index, Layout, Properties, STAMP, Scaler, object};
 use scaling::Scaling;
 
 /// The first bytes of a segment.
@@ -64,16 +64,22 @@ pub(crate) fn read(bytes: Bytes, wanted: &Wanted) -> Read<Recording> {
 fn segment<'a>(file: &Bytes<'a>, at: u64, length: u64, raw: u64, number: u32) -> Read<Bytes<'a>> {
     let there = file.len() - at - LEAD_IN;
     if length > there {
-        let promised = match length {
-            u64::MAX => "an end that its writer never noted".into(),
-            _ => format!("{} bytes of data", length.saturating_sub(raw)),
-        };
         let found = format!(
             "{} bytes of data in segment {number}{}",
             there.saturating_sub(raw),
             whole_before(number as usize - 1, "segment")
         );
-        return Err(Fault::cut_off(Place::Byte(at), found, promised));
+        return Err(match length {
+            u64::MAX => {
+                let expected = "a segment whose length was written when it was finished";
+                let remedy = "the recording was interrupted: open and save the file in the program that recorded it";
+                Fault::new(Place::Byte(at), found, expected, remedy)
+            }
+            _ => {
+                let declared = format!("{} bytes of data", length.saturating_sub(raw));
+                Fault::cut_off(Place::Byte(at), found, declared)
+            }
+        });
     }
     file.part(at + LEAD_IN, length, "a segment")
 }
@@ -85,6 +91,27 @@ struct File {
     by_path: HashMap<String, usize>,
     /// Objects with raw data in a segment, in their order.
     active: Vec<usize>,
+    /// The first time stamp, from which the seconds of all of them count.
+    origin: Origin,
+}
+
+/// The first time stamp of a file, in parts of 2^-64 s. A stamp has 8 bytes of a fraction and 8 of seconds, in the order
+/// of the file.
+#[derive(Default)]
+struct Origin(Option<i128>);
+
+impl Origin {
+    /// Appends the seconds from the origin to the stamps that begin every `stride` bytes of `data`.
+    fn extend(&mut self, into: &mut Vec<f64>, data: &[u8], stride: usize, order: Order) {
+        into.extend(heads(data, stride).map(|bytes| {
+            let stamp = match order {
+                Order::Little => i128::from_le_bytes(bytes),
+                Order::Big => i128::from_be_bytes(bytes),
+            };
+            let passed = stamp.wrapping_sub(*self.0.get_or_insert(stamp));
+            passed as f64 / 2_f64.powi(64)
+        }));
+    }
 }
 
 /// A channel, a group or the file itself.
@@ -96,7 +123,8 @@ struct Object {
     /// Arrangement of its raw data in the present segment.
     index: Option<Index>,
     active: bool,
-    /// Raw values; for DAQmx data, a list for each scaler.
+    has_stamps: bool,
+    /// Raw values, of time stamps the seconds; for DAQmx data, a list for each scaler.
     raw: Vec<(Option<u32>, Vec<f64>)>,
     /// Reason why its data are left out.
     unread: Option<String>,
@@ -142,8 +170,8 @@ impl File {
                 remedy,
             ));
         }
-        let chunk =
-            metadata::chunk(&used).ok_or_else(|| Fault::damaged(place.clone(), "sizes without end", "sizes"))?;
+        let chunk = metadata::chunk(&used)
+            .ok_or_else(|| Fault::damaged(place.clone(), "sizes that overflow", "sizes within the segment"))?;
         if chunk == 0 || length % chunk != 0 {
             if length == 0 {
                 return Ok(());
@@ -176,6 +204,7 @@ impl File {
                     properties: Properties::default(),
                     index: None,
                     active: false,
+                    has_stamps: false,
                     raw: Vec::new(),
                     unread: None,
                 });
@@ -184,6 +213,9 @@ impl File {
             let object = &mut self.objects[index];
             object.properties.extend(new.properties);
             object.index = new.index;
+            let has_stamps = matches!(&object.index, Some(index) if matches!(index.layout, Layout::Stamps));
+            object.has_stamps |= has_stamps;
+            object.wanted |= has_stamps;
             let was_active = std::mem::replace(&mut object.active, object.index.is_some());
             match (was_active, object.active) {
                 (false, true) => self.active.push(index),
@@ -203,7 +235,15 @@ impl File {
         for (object, index) in used {
             let object = &mut self.objects[*object];
             match &index.layout {
-                Layout::Plain(_) if interleaved => {}
+                Layout::Plain(_) | Layout::Stamps if interleaved => {}
+                Layout::Stamps => {
+                    let size = STAMP * index.count;
+                    let own = object.raw_of(None);
+                    chunk.pieces(at, size, STAMP, "time stamps", |piece| {
+                        self.origin.extend(own, piece, STAMP as usize, order);
+                    })?;
+                    at += size;
+                }
                 Layout::Plain(number) => {
                     let size = number.size() as u64 * index.count;
                     if object.wanted {
@@ -238,12 +278,16 @@ impl File {
         chunk.pieces(0, chunk.len(), stride, "raw data", |rows| {
             let mut column = 0;
             for (object, index) in used {
-                let Layout::Plain(number) = &index.layout else { continue };
                 let object = &mut self.objects[*object];
-                if object.wanted {
-                    number.extend(object.raw_of(None), &rows[column..], stride as usize, chunk.order);
+                let (values, stride) = (&rows[column..], stride as usize);
+                match &index.layout {
+                    Layout::Plain(number) if object.wanted => {
+                        number.extend(object.raw_of(None), values, stride, chunk.order);
+                    }
+                    Layout::Stamps => self.origin.extend(object.raw_of(None), values, stride, chunk.order),
+                    _ => {}
                 }
-                column += number.size();
+                column += index.size().unwrap_or(0) as usize;
             }
         })
     }
@@ -263,7 +307,7 @@ impl File {
         let times = times_of_groups(&channels)?;
         for (group, name, object, samples) in channels {
             let of_group = times.get(&group).filter(|_| object.step().is_none());
-            if of_group.is_some() && has_times(&name) {
+            if of_group.is_some() && object.has_times(&name) {
                 continue;
             }
             let time = match (object.step(), of_group) {
@@ -304,7 +348,8 @@ fn times_of_groups(channels: &[Channel<'_>]) -> Read<HashMap<String, TimeBase>> 
             unit if unit.is_empty() => name_and_unit(name).1,
             unit => unit,
         };
-        let Some(factor) = seconds(&unit).filter(|_| has_times(name) && is_untimed(group)) else {
+        let factor = if object.has_stamps { Some(1.0) } else { seconds(&unit) };
+        let Some(factor) = factor.filter(|_| object.has_times(name) && is_untimed(group)) else {
             continue;
         };
         let mut own = samples.clone();
@@ -354,7 +399,15 @@ impl Object {
         Some((self.properties.number("wf_start_offset").unwrap_or(0.0), step))
     }
 
+    /// True if a channel of this name may have the times of its group.
+    fn has_times(&self, name: &str) -> bool {
+        self.has_stamps || has_times(name)
+    }
+
     fn unit(&self) -> String {
+        if self.has_stamps {
+            return "s".into();
+        }
         let text = ["unit_string", "NI_UnitDescription", "unit", "Unit"];
         text.iter()
             .find_map(|name| self.properties.text(name))

@@ -37,7 +37,7 @@ pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
                 match number {
                     164 => units = Units::of(content.next()),
                     151 => {}
-                    _ => recording.pass_over(format!("dataset {number}"), place, what_else(number)),
+                    _ => recording.pass_over(format!("dataset {number}"), place, description_of(number)),
                 }
             }
         }
@@ -55,7 +55,7 @@ pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
     Ok(recording)
 }
 
-fn what_else(number: u32) -> &'static str {
+fn description_of(number: u32) -> &'static str {
     match number {
         15 | 2411 => "nodes of a geometry, no measured function",
         18 | 2420 => "coordinate systems of a geometry, no measured function",
@@ -362,14 +362,14 @@ impl Function {
             (false, _) => 4,
         };
         let stride = own_size + time;
-        let promised = self.count.saturating_mul(stride).max(binary.bytes);
+        let declared = self.count.saturating_mul(stride).max(binary.bytes);
         let there = (lines.bytes.len() - lines.at) as u64;
-        if promised > there {
+        if declared > there {
             let found = format!("{there} bytes of dataset 58b, and no line of -1 after it");
-            return Err(Fault::cut_off(place, found, format!("{promised} bytes")));
+            return Err(Fault::cut_off(place, found, format!("{declared} bytes")));
         }
-        let data = &lines.bytes[lines.at..lines.at + promised as usize];
-        lines.at += promised as usize;
+        let data = &lines.bytes[lines.at..lines.at + declared as usize];
+        lines.at += declared as usize;
         if !lines.filled().is_some_and(|line| line.is_border()) {
             let expected = "a line of -1 after the values";
             return Err(Fault::damaged(Place::Byte(lines.at as u64), "something else", expected));

@@ -102,7 +102,7 @@ mod tests {
     use super::{is_unit, name_and_unit};
 
     #[test]
-    fn units_are_known_by_their_parts() {
+    fn products_of_known_symbols_are_units() {
         for unit in [
             "m/s^2", "[mm]", "N/mm", "kN·s/m", "m/s²", "°", "deg/s", "-", "kgf", "µm", "1/s", "rad/s",
         ] {
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn headings_split_where_a_unit_stands() {
+    fn headings_are_split_into_name_and_unit() {
         let cases = [
             ("Travel [mm]", "Travel", "mm"),
             ("Acceleration (front)", "Acceleration (front)", ""),

@@ -36,7 +36,7 @@ fn only(found: &[Flaw]) -> &Flaw {
 }
 
 #[test]
-fn sound_signals_have_no_flaw() {
+fn signals_without_flaws_are_not_reported() {
     let slow: Vec<f64> = (0..20_000).map(|k| (TAU * 0.2 * f64::from(k) / RATE).sin()).collect();
     let impact: Vec<f64> = (0..4000)
         .map(|k| f64::from(k - 1000) / RATE)
@@ -94,7 +94,7 @@ fn a_signal_that_was_cut_off_is_clipped() {
 }
 
 #[test]
-fn a_sample_that_jumps_away_and_back_is_a_spike() {
+fn a_single_outlier_is_a_spike() {
     let mut signal = sweep();
     signal[15_000] += 4.0;
     signal[30_000] -= 6.0;
@@ -107,7 +107,7 @@ fn a_sample_that_jumps_away_and_back_is_a_spike() {
 }
 
 #[test]
-fn a_mean_that_runs_away_is_a_drift() {
+fn a_moving_mean_is_a_drift() {
     let mut signal: Vec<f64> = noise(20_000);
     let count = signal.len() as f64;
     signal

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use qcar_signals::read::{read, recognise};
-use qcar_signals::signal::{Recording, TimeBase};
+use qcar_signals::signal::{Recording, TimeBase, Value};
 
 fn sample(name: &str) -> Recording {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/samples").join(name);
@@ -59,6 +59,27 @@ fn structures_with_a_vector_of_times_are_groups() {
     assert!(name == "settings" && why.contains("without a vector of times"), "{why}");
 }
 
+/// What SciPy reads of both: version 4 by SciPy, and by MATLAB 4.2 in big-endian order.
+#[test]
+fn version_4_of_mat_has_its_values_texts_and_orders() {
+    let recording = sample("mat/scipy_v4.mat");
+    assert_eq!(recording.format, "MAT 4");
+    let scalars: Vec<_> = recording
+        .scalars
+        .iter()
+        .map(|own| (&*own.name, own.value.clone()))
+        .collect();
+    let expected = [("v_car", Value::Number(8.25)), ("driver", Value::Text("grose".into()))];
+    assert_eq!(scalars, expected);
+    assert_eq!(passed_over(&recording), [("z", "complex numbers")]);
+    let recording = sample("mat/matlab42_big_endian_v4.mat");
+    let column = |name: &str| recording.signal(name).unwrap().samples.to_vec();
+    assert_eq!(column("a[:,0]"), [1.0, 2.0, 3.0]);
+    assert_eq!(column("a[:,1]"), [2.0, 0.0, 0.0]);
+    let theta: Vec<f64> = (0..9).map(|at| f64::from(at) * std::f64::consts::FRAC_PI_4).collect();
+    assert_eq!(column("theta"), theta);
+}
+
 #[test]
 fn datasets_without_values_are_passed_over() {
     let recording = sample("mat/h5py_odd.h5");
@@ -71,6 +92,25 @@ fn datasets_without_values_are_passed_over() {
     ];
     assert_eq!(passed_over(&recording), expected);
     assert_eq!(recording.signals.len(), 1);
+}
+
+#[test]
+fn time_stamps_of_tdms_are_the_times_of_their_group() {
+    for name in ["tdms/time_stamps.tdms", "tdms/big_endian_time_stamps.tdms"] {
+        holds(&sample(name), "front", 0.25);
+    }
+    // 25 samples later than the other group.
+    let recording = sample("tdms/time_stamps.tdms");
+    let rear = recording.signal("rear").unwrap();
+    let TimeBase::Times(times) = &rear.time else {
+        panic!("{:?}", rear.time)
+    };
+    assert_eq!((times.len(), rear.samples.len()), (25, 25));
+    assert!(
+        (times[0] - 0.05).abs() < 1e-12 && (times[24] - 0.098).abs() < 1e-12,
+        "{times:?}"
+    );
+    assert_eq!(recording.signals.len(), 2);
 }
 
 #[test]

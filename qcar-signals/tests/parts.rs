@@ -42,7 +42,7 @@ fn bits(signal: &Signal) -> (Vec<u64>, Option<Vec<u64>>) {
 }
 
 #[test]
-fn what_is_read_from_the_disk_is_what_is_read_from_memory() {
+fn reading_from_disk_gives_the_same_as_from_memory() {
     let mut read = 0;
     for file in files() {
         let Ok(memory) = recognise(&fs::read(&file).unwrap()) else {
@@ -92,7 +92,7 @@ fn a_channel_that_is_read_alone_has_the_same_samples_and_times() {
 
 /// Formats of long recordings, whose other channels are not read.
 #[test]
-fn what_is_not_wanted_is_listed_without_samples() {
+fn unwanted_channels_are_listed_without_samples() {
     let nobody = ["no channel is called so".to_string()];
     for end in ["mf4", "mdf", "rsp", "drv", "rpc", "tim", "tdms", "mat"] {
         let of_kind = || {

@@ -77,7 +77,7 @@ fn sines_in_the_stop_band_vanish() {
 }
 
 #[test]
-fn a_constant_stays_to_the_ends() {
+fn a_constant_is_preserved_up_to_the_ends() {
     for (from, to) in PAIRS {
         let (from, to) = (grid(0.0, from), grid(0.0003, to));
         let resampled = resample(&vec![9.81; from.count], from, to);
@@ -86,7 +86,7 @@ fn a_constant_stays_to_the_ends() {
 }
 
 #[test]
-fn a_line_stays_to_the_ends() {
+fn a_line_is_preserved_up_to_the_ends() {
     let (from, to) = (grid(0.0, 1000.0), grid(0.0, 200.0));
     let samples: Vec<f64> = (0..from.count).map(|k| 3.0 * from.time(k) - 1.0).collect();
     let resampled = resample(&samples, from, to);
@@ -95,7 +95,7 @@ fn a_line_stays_to_the_ends() {
 }
 
 #[test]
-fn records_shorter_than_the_filter_are_no_trouble() {
+fn records_shorter_than_the_filter_are_resampled() {
     let short = Grid {
         start: 0.0,
         rate: 1000.0,

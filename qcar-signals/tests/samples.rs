@@ -319,6 +319,17 @@ fn mat() {
             "2 variables before it are whole: Signal_0, Signal_1",
         ],
     );
+    let fault = fault_of_cut("mat/scipy_v4.mat", 5000);
+    says(
+        &fault,
+        &[
+            "`acc`",
+            "3200 bytes",
+            "1754 bytes",
+            "cut off",
+            "the variable before it is whole: t",
+        ],
+    );
 }
 
 #[test]
@@ -353,7 +364,7 @@ fn multiplexed_groups_hold_the_same_as_demultiplexed_ones() {
 }
 
 #[test]
-fn a_file_that_begins_like_no_format_is_refused_for_its_beginning() {
+fn the_error_about_an_unknown_format_quotes_the_beginning() {
     for name in [
         "mdf/plain_3groups.mf4",
         "rpc/short_4frames_group.tim",

@@ -26,7 +26,7 @@ const DIGITS: usize = 6;
 
 /// List the channels of a measured file: units, rates, ranges
 ///
-/// The format is recognised from the content: MDF 3 and 4, RPC III, UFF 58, TDMS, MAT 5 to 7.3, .xlsx, OpenCRG, or
+/// The format is recognised from the content: MDF 3 and 4, RPC III, UFF 58, TDMS, MAT 4 to 7.3, .xlsx, OpenCRG, or
 /// text.
 #[derive(Args)]
 #[command(

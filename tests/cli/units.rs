@@ -197,8 +197,20 @@ fn messages_about_roads_and_tyres_are_in_the_units_asked_for() {
     fs::write(own.join("campaign.toml"), deep).unwrap();
     let simulate = ["simulate", own.to_str().unwrap(), "--units"];
     let tyre = |units| qcar(&[&simulate[..], &[units]].concat());
-    refused(&tyre("si"), &["deflection is 0.4 m", "the radius, 0.35 m"]);
-    refused(&tyre("mm"), &["deflection is 400 mm", "the radius, 350 mm"]);
+    refused(
+        &tyre("si"),
+        &[
+            "found a static deflection of 0.4 m, expected more than 0",
+            "the radius, 0.35 m",
+        ],
+    );
+    refused(
+        &tyre("mm"),
+        &[
+            "found a static deflection of 400 mm, expected more than 0",
+            "the radius, 350 mm",
+        ],
+    );
     // What is wrong in a file is quoted as it stands there, whatever the units of results.
     let slow = text.replacen("peak_velocity = 0.025", "peak_velocity = \"-25 mm/s\"", 1);
     assert_ne!(text, slow);

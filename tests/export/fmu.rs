@@ -13,8 +13,8 @@ use serde_json::Value;
 use crate::programs::{python_with, qcar, run};
 
 /// Samples of the inputs.
-const RATE: f64 = 250.0;
-const SAMPLES: usize = 251;
+pub const RATE: f64 = 250.0;
+pub const SAMPLES: usize = 251;
 
 /// How far trajectories may be from ours, in parts of the largest value of each.
 const TOLERANCE: f64 = 1e-6;
@@ -276,14 +276,17 @@ impl Subject {
         }
     }
 
-    fn samples(&self) -> Vec<Vec<f64>> {
-        let inputs = self.model.about().inputs.iter();
-        let row = |name: &str| (0..SAMPLES).map(|k| self.input(name, k as f64 / RATE)).collect();
-        inputs.map(|input| row(&input.name)).collect()
+    pub fn samples(&self) -> Vec<Vec<f64>> {
+        let row = |name: &&str| (0..SAMPLES).map(|k| self.input(name, k as f64 / RATE)).collect();
+        self.inputs().iter().map(row).collect()
+    }
+
+    pub fn inputs(&self) -> Vec<&str> {
+        self.model.about().inputs.iter().map(|input| &*input.name).collect()
     }
 
     pub fn input_file(&self) -> String {
-        let names: Vec<&str> = self.model.about().inputs.iter().map(|input| &*input.name).collect();
+        let names = self.inputs();
         let samples = self.samples();
         let line = |k: usize| {
             let values: Vec<String> = samples.iter().map(|row| format!("{:?}", row[k])).collect();
@@ -298,10 +301,15 @@ impl Subject {
 
     /// The outputs at the samples, by the runtime's integrator at a tolerance that is tighter by two orders.
     pub fn ride(&self, between: Between) -> Vec<Vec<f64>> {
+        self.ride_of(self.samples(), between)
+    }
+
+    /// The same with other inputs: a row for each, with as many samples.
+    pub fn ride_of(&self, samples: Vec<Vec<f64>>, between: Between) -> Vec<Vec<f64>> {
         let about = self.model.about();
         let mut system = Driven {
             subject: self,
-            samples: self.samples(),
+            samples,
             leg: 0,
             between,
         };

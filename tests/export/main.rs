@@ -1,8 +1,9 @@
-//! Exported models against other programs: FMPy and four other importers of FMUs, the FMU Manipulation Toolbox, SciPy,
-//! GNU Octave, Node; and tables against pyarrow.
+//! Exported models against other programs: FMPy and four other importers of FMUs, fmusim of the FMI project, the FMU
+//! Manipulation Toolbox, SciPy, GNU Octave, Node; and tables against pyarrow.
 
 mod conformity;
 mod fmu;
+mod fmusim;
 mod histories;
 mod importers;
 mod javascript;

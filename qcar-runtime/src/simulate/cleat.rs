@@ -78,8 +78,7 @@ pub fn tyre_of(vehicle: &dyn Fn(&str) -> Option<f64>, file: &Path) -> Result<(Ty
     let load = fact("static_tire_load", "N")?;
     let tyre = Tyre::new(radius, deflection, Geometry::Area, Rates::AtStaticDeflection).map_err(|error| {
         let (place, remedy) = (Place::Name("vehicle".into()), "correct r_tire and static_tire_def");
-        let (found, expected) = (error.to_string(), "a tyre that carries the car");
-        Problem::new(file, place, found, expected, remedy)
+        Problem::new(file, place, error.found(), error.expected(), remedy)
     })?;
     Ok((tyre, load))
 }

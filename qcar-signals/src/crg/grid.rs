@@ -51,10 +51,10 @@ impl Grid {
         };
         let rows = columns[0].len();
         let found = format!("{rows} rows of data");
-        let expected = |promised: f64| format!("{promised} rows, as REFERENCE_LINE_END_U says");
-        match header.promised()? {
-            Some(promised) if promised > rows as f64 => Err(Fault::cut_off(Place::File, found, expected(promised))),
-            Some(promised) if promised < rows as f64 => Err(Fault::damaged(Place::File, found, expected(promised))),
+        let expected = |declared: f64| format!("{declared} rows, as REFERENCE_LINE_END_U says");
+        match header.declared_rows()? {
+            Some(declared) if declared > rows as f64 => Err(Fault::cut_off(Place::File, found, expected(declared))),
+            Some(declared) if declared < rows as f64 => Err(Fault::damaged(Place::File, found, expected(declared))),
             _ if rows < 2 => Err(Fault::cut_off(Place::File, found, "a road of two at least")),
             _ => Ok(Grid { format, columns }),
         }
@@ -64,9 +64,11 @@ impl Grid {
 /// Numbers one after another; the last record is padded with numbers that are ignored.
 fn binary(data: &[u8], number: Number, columns: usize, header: &Header) -> Read<Vec<Vec<f64>>> {
     let row = columns * number.size();
-    let promised = header.promised()?.filter(|rows| rows * row as f64 <= data.len() as f64);
-    let whole = promised.map_or(data.len() / row, |rows| rows as usize);
-    if promised.is_some() && data.len() - whole * row >= BINARY_RECORD {
+    let declared = header
+        .declared_rows()?
+        .filter(|rows| rows * row as f64 <= data.len() as f64);
+    let whole = declared.map_or(data.len() / row, |rows| rows as usize);
+    if declared.is_some() && data.len() - whole * row >= BINARY_RECORD {
         let place = Place::Byte((header.end + whole * row) as u64);
         return Err(Fault::damaged(
             place,
@@ -77,7 +79,7 @@ fn binary(data: &[u8], number: Number, columns: usize, header: &Header) -> Read<
     let data = &data[..whole * row];
     let column = |at: usize| number.strided(data.get(at * number.size()..).unwrap_or_default(), row, Order::Big);
     let mut grid: Vec<Vec<f64>> = (0..columns).map(column).collect();
-    if promised.is_none() {
+    if declared.is_none() {
         let is_filled = |row: usize| grid.iter().any(|column| !column[row].is_nan());
         let rows = (0..whole).rev().find(|&row| is_filled(row)).map_or(0, |last| last + 1);
         grid.iter_mut().for_each(|column| column.truncate(rows));

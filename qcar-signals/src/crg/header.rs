@@ -119,7 +119,7 @@ impl Header {
     }
 
     /// Refuses references to another file, and modifiers that change the profile.
-    pub fn refuse_what_is_elsewhere(&self) -> Read<()> {
+    pub fn refuse_references_and_modifiers(&self) -> Read<()> {
         if let Some(&line) = self.sections.get("ROAD_CRG_FILE") {
             let remedy = "give that file";
             return Err(Fault::new(
@@ -153,7 +153,7 @@ impl Header {
     }
 
     /// Number of rows that follows from the length of the reference line; `None` if that is not stated.
-    pub fn promised(&self) -> Read<Option<f64>> {
+    pub fn declared_rows(&self) -> Read<Option<f64>> {
         let Distances { start, step } = self.distances()?;
         let Some((end, line)) = self.stated("REFERENCE_LINE_END_U") else {
             return Ok(None);

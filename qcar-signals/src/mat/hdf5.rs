@@ -113,7 +113,7 @@ impl<'a> Reader<'a> {
             return Ok(());
         }
         let found = "a link to something that was read before";
-        Err(Fault::damaged(self.file.place(at), found, "links that lead on"))
+        Err(Fault::damaged(self.file.place(at), found, "links without a loop"))
     }
 
     /// The value of a variable.

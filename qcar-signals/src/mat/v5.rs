@@ -9,12 +9,12 @@ use flate2::read::ZlibDecoder;
 
 use crate::bytes::{Bytes, Number, Order, field, text};
 use crate::content::Content;
-use crate::error::{Fault, Place, Read, whole_before};
+use crate::error::{Fault, Place, Read};
 use crate::find::Wanted;
 use crate::limit::Budget;
 
 use super::HEADER;
-use super::value::{Array, Fields, Value, Variable, is_read};
+use super::value::{Array, Fields, Value, Variable, among, is_read};
 
 const PACKED: u32 = 15;
 const MATRIX: u32 = 14;
@@ -35,12 +35,8 @@ pub(super) fn variables(file: Bytes, wanted: &Wanted) -> Read<Vec<Variable>> {
     let mut variables: Vec<Variable> = Vec::new();
     let mut at = HEADER as u64;
     while at < file.len() {
-        let element = element(&file, at).map_err(|mut fault| {
-            let names: Vec<&str> = variables.iter().map(|variable| variable.name.as_str()).collect();
-            if !names.is_empty() {
-                let whole = whole_before(names.len(), "variable");
-                fault.found += &format!("{whole}: {}", names.join(", "));
-            }
+        let element = element(&file, at).map_err(|fault| {
+            let fault = among(&variables, fault);
             match name_of_packed(&file, at) {
                 Some(name) => fault.of(&name),
                 None => fault,
@@ -180,8 +176,8 @@ fn numbers(data: &Bytes, at: u64, dimensions: Vec<u64>) -> Read<Array> {
         }
     };
     let numbers = number.all_of(&element.data, "numbers")?;
-    let promised = dimensions.iter().try_fold(1_u64, |all, &size| all.checked_mul(size));
-    if promised != Some(numbers.len() as u64) {
+    let declared = dimensions.iter().try_fold(1_u64, |all, &size| all.checked_mul(size));
+    if declared != Some(numbers.len() as u64) {
         let sizes: Vec<String> = dimensions.iter().map(u64::to_string).collect();
         let found = format!("{} numbers", numbers.len());
         return Err(Fault::damaged(

@@ -1,6 +1,6 @@
 //! Variables of a MAT-file, independent of the version of the file.
 
-use crate::error::Place;
+use crate::error::{Fault, Place, whole_before};
 use crate::find::Wanted;
 use crate::units::is_time;
 
@@ -9,6 +9,16 @@ pub(super) struct Variable {
     pub(super) name: String,
     pub(super) value: Value,
     pub(super) place: Place,
+}
+
+/// A fault in the variable after these, which names them.
+pub(super) fn among(before: &[Variable], mut fault: Box<Fault>) -> Box<Fault> {
+    let names: Vec<&str> = before.iter().map(|variable| variable.name.as_str()).collect();
+    if !names.is_empty() {
+        let whole = whole_before(names.len(), "variable");
+        fault.found += &format!("{whole}: {}", names.join(", "));
+    }
+    fault
 }
 
 /// The value of a variable. Arrays are stored column by column.

@@ -162,7 +162,7 @@ mod tests {
     use super::{Bytes, Content, Data, Order, Part};
 
     #[test]
-    fn records_that_go_over_from_part_to_part_are_whole() {
+    fn records_across_several_parts_are_joined() {
         let bytes: Vec<u8> = (0..100).collect();
         for cuts in [&[][..], &[50], &[1, 2, 3], &[10, 10, 11, 97], &[99]] {
             let ends = cuts.iter().copied().chain([100]);

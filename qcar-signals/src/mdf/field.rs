@@ -184,7 +184,7 @@ mod tests {
     use super::{Kind, Order, half, value};
 
     #[test]
-    fn bits_are_taken_from_where_they_lie() {
+    fn values_of_any_range_of_bits_are_extracted() {
         assert_eq!(
             value(&[0xab, 0xcd], 4, 8, Kind::Unsigned, Order::Little),
             f64::from(0xda)

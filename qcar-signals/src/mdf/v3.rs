@@ -85,11 +85,11 @@ fn add_data_group(
     if groups.iter().all(|group| group.records == 0) {
         return Ok(());
     }
-    let promised = groups
+    let declared = groups
         .iter()
         .map(|group| u64::from(group.records) * (group.length + around) as u64);
-    let promised = promised.fold(0, u64::saturating_add);
-    let data = file.part(start.into(), promised, "records")?;
+    let declared = declared.fold(0, u64::saturating_add);
+    let data = file.part(start.into(), declared, "records")?;
     match groups.as_slice() {
         [_] => groups
             .remove(0)

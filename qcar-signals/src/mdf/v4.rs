@@ -150,10 +150,10 @@ impl Sorting<'_> {
             return;
         }
         self.pending.extend_from_slice(piece);
-        let mut given = 0;
-        while given < self.pending.len() && self.needed <= self.pending.len() - given {
-            match self.give(given) {
-                Ok(Ok(length)) => (given, self.needed) = (given + length, 0),
+        let mut sorted = 0;
+        while sorted < self.pending.len() && self.needed <= self.pending.len() - sorted {
+            match self.sort(sorted) {
+                Ok(Ok(length)) => (sorted, self.needed) = (sorted + length, 0),
                 Ok(Err(needed)) => self.needed = needed,
                 Err(fault) => {
                     self.outcome = Err(fault);
@@ -161,13 +161,13 @@ impl Sorting<'_> {
                 }
             }
         }
-        self.pending.drain(..given);
-        self.at += given as u64;
+        self.pending.drain(..sorted);
+        self.at += sorted as u64;
     }
 
     /// Sorts the record that begins at a byte of `pending`. Returns its size, or its smallest size if it is not
     /// complete.
-    fn give(&mut self, from: usize) -> Read<Result<usize, usize>> {
+    fn sort(&mut self, from: usize) -> Read<Result<usize, usize>> {
         let (at, bytes) = (self.at + from as u64, &self.pending[from..]);
         let number = |bytes: &[u8]| bytes.iter().rev().fold(0, |all, &byte| all << 8 | u64::from(byte));
         if !(1..=8).contains(&self.id_size) {

@@ -23,6 +23,8 @@ pub(super) struct Index {
 #[derive(Clone)]
 pub(super) enum Layout {
     Plain(Number),
+    /// Time stamps.
+    Stamps,
     /// Data other than numbers, with their size in a chunk, bytes.
     Unread {
         bytes: u64,
@@ -76,6 +78,11 @@ impl Properties {
     }
 }
 
+/// Type of a time stamp.
+const TIME: u32 = 0x44;
+/// Bytes of a time stamp.
+pub(super) const STAMP: u64 = 16;
+
 /// Largest number of bytes that values use, relative to those of a row.
 const MOST_USES: u64 = 16;
 
@@ -84,6 +91,7 @@ impl Index {
     pub(super) fn size(&self) -> Option<u64> {
         match &self.layout {
             Layout::Plain(number) => Some(number.size() as u64),
+            Layout::Stamps => Some(STAMP),
             _ => None,
         }
     }
@@ -93,6 +101,7 @@ impl Index {
 pub(super) fn chunk(used: &[(usize, Index)]) -> Option<u64> {
     let own = |index: &Index| match &index.layout {
         Layout::Plain(number) => index.count.checked_mul(number.size() as u64),
+        Layout::Stamps => index.count.checked_mul(STAMP),
         Layout::Unread { bytes, .. } => Some(*bytes),
         Layout::Daqmx { .. } => Some(0),
     };
@@ -200,7 +209,7 @@ fn plain(from: &Bytes, at: &mut u64) -> Read<Index> {
             *at += 8;
             unread(Some(bytes), "texts")
         }
-        (None, 0x44) => unread(count.checked_mul(16), "time stamps"),
+        (None, TIME) => Layout::Stamps,
         (None, 0x0008_000c) => unread(count.checked_mul(8), "complex numbers"),
         (None, 0x0010_000d) => unread(count.checked_mul(16), "complex numbers"),
         _ => {
@@ -311,7 +320,7 @@ fn property(from: &Bytes, at: &mut u64) -> Read<Option<Property>> {
     }
     let number = number(kind);
     let size = match kind {
-        0x44 => 16,
+        TIME => STAMP,
         _ => number.map_or(0, |number| number.size() as u64),
     };
     if size == 0 {

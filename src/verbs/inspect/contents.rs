@@ -144,7 +144,7 @@ impl<T> Contents<T> {
         let before = self.recording.signals.len();
         for mut signal in part.signals {
             let mut known = self.recording.signals[..before].iter();
-            if wanted.means(&signal) && !known.any(|own| is_same(own, &signal)) {
+            if wanted.includes(&signal) && !known.any(|own| is_same(own, &signal)) {
                 self.found.push(looked_into(&mut signal, look));
                 self.recording.signals.push(signal);
             }

@@ -125,8 +125,8 @@ impl Walk<'_> {
         let mut dimensions = dataset.shape()?;
         dimensions.reverse();
         let sizes = dimensions.iter().copied();
-        let promised = sizes.chain([dataset.element_size()?]).try_fold(1, u64::checked_mul);
-        if !self.may_take(promised) {
+        let declared = sizes.chain([dataset.element_size()?]).try_fold(1, u64::checked_mul);
+        if !self.may_take(declared) {
             return Ok(Value::Other(
                 "more data than a file of this size may give; QCAR_MAX_MIB sets another limit",
             ));

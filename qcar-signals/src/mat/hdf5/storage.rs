@@ -43,14 +43,14 @@ impl<'a> Reader<'a> {
 
     /// The elements as one run of bytes; `None` if they are in chunks.
     fn run(&mut self, header: &Header<'a>) -> Read<Option<Bytes<'a>>> {
-        let promised = promised(header);
+        let declared = declared_size(header);
         let there = match &header.layout {
-            Some(Layout::Compact(bytes)) if promised <= bytes.len() => {
-                return bytes.part(0, promised, "elements of a dataset").map(Some);
+            Some(Layout::Compact(bytes)) if declared <= bytes.len() => {
+                return bytes.part(0, declared, "elements of a dataset").map(Some);
             }
-            Some(Layout::Contiguous(at, size)) if promised <= *size => {
+            Some(Layout::Contiguous(at, size)) if declared <= *size => {
                 self.first_time(*at)?;
-                return self.file.part(*at, promised, "elements of a dataset").map(Some);
+                return self.file.part(*at, declared, "elements of a dataset").map(Some);
             }
             Some(Layout::Chunked(..)) => return Ok(None),
             Some(Layout::Compact(bytes)) => bytes.len(),
@@ -62,7 +62,7 @@ impl<'a> Reader<'a> {
 
     fn short(&self, header: &Header, there: u64) -> Box<Fault> {
         let found = format!("a dataset of {:?} elements with {there} bytes", header.dimensions);
-        Fault::damaged(self.file.place(0), found, format!("{} bytes", promised(header)))
+        Fault::damaged(self.file.place(0), found, format!("{} bytes", declared_size(header)))
     }
 
     /// A dataset from its chunks, unpacked one by one.
@@ -73,11 +73,11 @@ impl<'a> Reader<'a> {
         let element = element(header);
         let size = self.size_of_chunk(*tree, chunk, header)?;
         let leaves = self.leaves(*tree, 1, chunk.len() as u64)?;
-        let (promised, there) = (promised(header), size.saturating_mul(leaves.len() as u64));
-        if promised > there {
+        let (declared, there) = (declared_size(header), size.saturating_mul(leaves.len() as u64));
+        if declared > there {
             return Err(self.short(header, there));
         }
-        self.budget.count(promised, &self.file.place(*tree))?;
+        self.budget.count(declared, &self.file.place(*tree))?;
         for leaf in &leaves {
             self.first_time(leaf.child)?;
             let there = self.file.part(leaf.child, leaf.size.into(), "a chunk")?.len();
@@ -87,7 +87,7 @@ impl<'a> Reader<'a> {
                 return Err(Fault::damaged(self.file.place(leaf.child), found, expected));
             }
         }
-        let mut joined = vec![0; promised as usize];
+        let mut joined = vec![0; declared as usize];
         for leaf in leaves {
             let bytes = self.chunk(&leaf, header, element, size)?;
             if bytes.len() as u64 != size {
@@ -159,7 +159,7 @@ fn element(header: &Header) -> u64 {
 }
 
 /// Bytes of all elements.
-fn promised(header: &Header) -> u64 {
+fn declared_size(header: &Header) -> u64 {
     let sizes = header.dimensions.iter();
     let all = sizes.copied().try_fold(element(header), u64::checked_mul);
     all.unwrap_or(u64::MAX)
