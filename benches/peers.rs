@@ -49,7 +49,7 @@ struct Way<'a> {
 fn main() {
     let from_disk = compile_file(Path::new(""), "benches/subject/axle_d_z.axle").expect("the model can be read");
     let compiled = from_disk.compiled.expect("the model compiles");
-    let (machine, narrow) = (Machine::new(&compiled), Machine::narrow(&compiled));
+    let (machine, narrow) = (Machine::new(&compiled), Machine::with_avx(&compiled));
     let (peers, missing) = child::all();
     for reason in missing {
         println!("left out: {reason}");

@@ -99,7 +99,7 @@ const SENSITIVITIES: [&str; 7] = [
     include_str!("report/js/sensitivity/summary.js"),
     include_str!("report/js/sensitivity/tornado.js"),
     include_str!("report/js/sensitivity/matrix.js"),
-    include_str!("report/js/sensitivity/doubt.js"),
+    include_str!("report/js/sensitivity/uncertainty.js"),
     include_str!("report/js/sensitivity/sobol.js"),
     include_str!("report/js/sensitivity/sensitivity.js"),
 ];

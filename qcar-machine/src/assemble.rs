@@ -1,4 +1,4 @@
-//! Instructions of x86-64 as bytes.
+//! Encoding of x86-64 instructions.
 //!
 //! Intel 64 and IA-32 Architectures Software Developer's Manual, volume 2: chapter 2 has the forms of an instruction
 //! (ModRM, SIB, REX, VEX and EVEX), chapters 3 to 5 its opcode. One or four numbers need AVX, eight AVX-512 with its
@@ -198,8 +198,8 @@ impl Assembler {
         self.bytes.push(test.0 << 4);
     }
 
-    /// Ends the use of wide registers, which would slow down code for narrow ones.
-    pub fn narrow(&mut self) {
+    /// VZEROUPPER: clears the upper parts of the vector registers, which would slow down SSE code after the function.
+    pub fn zero_upper(&mut self) {
         self.bytes.extend([0xc5, 0xf8, 0x77]);
     }
 
@@ -258,13 +258,13 @@ impl Assembler {
     }
 
     /// Reads and writes a memory word unchanged, so that the system maps its page.
-    pub fn touch(&mut self, place: Memory) {
+    pub fn probe(&mut self, place: Memory) {
         self.rex(0x83, 1, Operand::Memory(place));
         self.bytes.push(0);
     }
 
     /// Jumps back to an earlier position while `a < b`.
-    pub fn repeat_while_below(&mut self, a: Pointer, b: Pointer, from: usize) {
+    pub fn jump_back_while_below(&mut self, a: Pointer, b: Pointer, from: usize) {
         self.rex(0x39, b.0, Operand::Register(Register(a.0)));
         self.bytes.extend([0x0f, 0x82]);
         let back = from as i64 - (self.here() as i64 + 4);

@@ -1,9 +1,9 @@
-//! Operations that machine code does not compute itself: functions of Rust, and tables.
+//! Operations for which machine code calls Rust: functions, powers and tables.
 
 use qcar_dsl::expr::{Curve, Function};
 use qcar_dsl::program::{Op, Program};
 
-/// An operation by a function of Rust.
+/// An operation that machine code calls Rust for.
 #[derive(Debug)]
 pub enum Call {
     /// Of one argument.

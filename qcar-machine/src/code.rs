@@ -1,4 +1,4 @@
-//! Entry to machine code and its calls: all unsafe code.
+//! Executable memory and calls of its code. All unsafe code of the crate is here.
 #![allow(
     unsafe_code,
     reason = "the processor runs code that was written into memory, which Rust cannot check"
@@ -13,25 +13,27 @@ use qcar_model::{LANES, Lanes};
 use crate::assemble::Width;
 use crate::call::Call;
 use crate::reads::Reads;
-use crate::shape::{Breadth, Shape};
+use crate::shape::{Shape, VectorWidth};
 use crate::translate::{Translated, Wide, translate};
 
 /// Bytes of a number.
-const NUMBER: usize = size_of::<f64>();
+const NUMBER_BYTES: usize = size_of::<f64>();
 
-/// For one point, or for a row of sets: addresses of four parts, of the results and of the constants.
-type Entered = unsafe extern "sysv64" fn(*const f64, *const f64, *const f64, *const f64, *mut f64, *const Wide);
-/// For many points: the shared part, the rows that are read and written, the offsets in bytes of the first point and of
-/// the end, and the constants.
-type Swept = unsafe extern "sysv64" fn(*const f64, *const *const f64, *const *mut f64, usize, usize, *const Wide);
+/// Code for one point or for parameter sets. Arguments: the addresses of four parts, of the results and of the
+/// constants.
+type PointFunction = unsafe extern "sysv64" fn(*const f64, *const f64, *const f64, *const f64, *mut f64, *const Wide);
+/// Code for many points. Arguments: the shared part, the rows that are read and written, the offsets in bytes of the
+/// first point and of the end, and the constants.
+type SweepFunction =
+    unsafe extern "sysv64" fn(*const f64, *const *const f64, *const *mut f64, usize, usize, *const Wide);
 
 /// A program as machine code in one shape.
 #[derive(Debug)]
 pub struct Code {
     memory: Mmap,
-    /// The calls; the code contains their addresses.
+    /// Calls of functions, kept alive here because the code contains their addresses.
     _calls: Box<[Call]>,
-    numbers: Box<[Wide]>,
+    constants: Box<[Wide]>,
     reads: Reads,
     results: usize,
     /// Number of sets or points that the instructions compute together.
@@ -41,23 +43,23 @@ pub struct Code {
 impl Code {
     /// The code for vectors of this many numbers. `None` if this machine cannot run it, if the system refuses
     /// executable memory, or if the program has no translation.
-    pub fn new(vectors: &Vectors, program: &Program, shape: Shape, breadth: Breadth) -> Option<Code> {
-        if !breadth.is_there() {
+    pub fn new(vectors: &Vectors, program: &Program, shape: Shape, vector_width: VectorWidth) -> Option<Code> {
+        if !vector_width.is_supported() {
             return None;
         }
         let reads = Reads::new(vectors, program, shape);
-        let (width, enter) = match (shape, breadth) {
-            (Shape::Once, _) => (Width::One, compute::<1> as *const () as usize),
-            (_, Breadth::Four) => (Width::Four, compute::<4> as *const () as usize),
-            (_, Breadth::Eight) => (Width::Eight, compute::<8> as *const () as usize),
+        let (width, compute_call) = match (shape, vector_width) {
+            (Shape::Single, _) => (Width::One, compute::<1> as *const () as usize),
+            (_, VectorWidth::Four) => (Width::Four, compute::<4> as *const () as usize),
+            (_, VectorWidth::Eight) => (Width::Eight, compute::<8> as *const () as usize),
         };
-        let Translated { code, calls, numbers } = translate(program, &reads, (shape, width), enter)?;
+        let Translated { code, calls, constants } = translate(program, &reads, (shape, width), compute_call)?;
         let mut memory = MmapMut::map_anon(code.len()).ok()?;
         memory.copy_from_slice(&code);
         Some(Code {
             memory: memory.make_exec().ok()?,
             _calls: calls,
-            numbers,
+            constants,
             reads,
             results: program.outputs.len(),
             width: width.numbers(),
@@ -70,16 +72,16 @@ impl Code {
     /// If an argument has fewer entries than the program reads, or the results do not fit.
     pub fn run(&self, given: &Arguments, into: &mut [f64]) {
         let mut parts = [std::ptr::null(); 4];
-        for (pointer, &(part, least)) in parts.iter_mut().zip(&self.reads.parts) {
-            *pointer = at_least(given.part(part), least).as_ptr();
+        for (pointer, &(part, length)) in parts.iter_mut().zip(&self.reads.parts) {
+            *pointer = checked(given.part(part), length).as_ptr();
         }
         let into = &mut into[..self.results];
         let [a, b, c, d] = parts;
         // SAFETY: `memory` holds a function of this signature, since `translate` wrote it so. It reads the entries of
         // the parts below those lengths, the numbers, and its own stack, and writes as many results as there are.
         unsafe {
-            let code: Entered = std::mem::transmute(self.memory.as_ptr());
-            code(a, b, c, d, into.as_mut_ptr(), self.numbers.as_ptr());
+            let code: PointFunction = std::mem::transmute(self.memory.as_ptr());
+            code(a, b, c, d, into.as_mut_ptr(), self.constants.as_ptr());
         }
     }
 
@@ -89,9 +91,9 @@ impl Code {
     /// As [`Code::run`].
     pub fn sets(&self, given: &[(Part, &[Lanes])], into: &mut [Lanes]) {
         let mut parts = [std::ptr::null::<f64>(); 4];
-        for (pointer, &(part, least)) in parts.iter_mut().zip(&self.reads.parts) {
+        for (pointer, &(part, length)) in parts.iter_mut().zip(&self.reads.parts) {
             let rows = given.iter().find(|own| own.0 == part).map_or(&[][..], |own| own.1);
-            *pointer = at_least(rows, least).as_flattened().as_ptr();
+            *pointer = checked(rows, length).as_flattened().as_ptr();
         }
         let into = into[..self.results].as_flattened_mut();
         for first in (0..LANES).step_by(self.width) {
@@ -99,8 +101,8 @@ impl Code {
             let into = into.as_mut_ptr().wrapping_add(first);
             // SAFETY: as in `run`, where each entry and each result is `width` numbers of its row, from `first` on.
             unsafe {
-                let code: Entered = std::mem::transmute(self.memory.as_ptr());
-                code(a, b, c, d, into, self.numbers.as_ptr());
+                let code: PointFunction = std::mem::transmute(self.memory.as_ptr());
+                code(a, b, c, d, into, self.constants.as_ptr());
             }
         }
     }
@@ -115,7 +117,7 @@ impl Code {
             return false;
         }
         let shared = self.reads.parts.first();
-        let shared = shared.map_or(&[][..], |&(part, least)| at_least(given.part(part), least));
+        let shared = shared.map_or(&[][..], |&(part, length)| checked(given.part(part), length));
         let read = self.reads.rows.iter();
         let read: Vec<*const f64> = read
             .map(|&(part, entry)| given.part(part)[entry * points..][..points].as_ptr())
@@ -133,9 +135,9 @@ impl Code {
             // `width` while their first is below `to`, and each row has `points` of them, which is at least `to + width
             // - 1`.
             unsafe {
-                let code: Swept = std::mem::transmute(self.memory.as_ptr());
-                let (from, to, numbers) = (NUMBER * from, NUMBER * to, self.numbers.as_ptr());
-                code(shared.as_ptr(), read.as_ptr(), written.as_ptr(), from, to, numbers);
+                let code: SweepFunction = std::mem::transmute(self.memory.as_ptr());
+                let (from, to, constants) = (NUMBER_BYTES * from, NUMBER_BYTES * to, self.constants.as_ptr());
+                code(shared.as_ptr(), read.as_ptr(), written.as_ptr(), from, to, constants);
             }
         };
         // The last group is complete too: it may compute some points of the previous one again.
@@ -149,10 +151,10 @@ impl Code {
 }
 
 #[track_caller]
-fn at_least<T>(entries: &[T], least: usize) -> &[T] {
+fn checked<T>(entries: &[T], length: usize) -> &[T] {
     assert!(
-        entries.len() >= least,
-        "{} entries where a model reads {least}",
+        entries.len() >= length,
+        "{} entries where a model reads {length}",
         entries.len()
     );
     entries
@@ -176,13 +178,15 @@ mod tests {
     use qcar_dsl::expr::Function;
     use qcar_dsl::program::{Op, Value};
 
-    /// Without code, everything would be left to the interpreter, which has the same bits.
+    /// Other tests compare with the interpreter, and would pass if there were no code at all.
     #[test]
-    fn a_processor_runs_machine_code_in_each_shape_and_breadth() {
-        [Breadth::Four, Breadth::Eight].into_iter().for_each(runs_in_each_shape);
+    fn machine_code_runs_in_each_shape_and_vector_width() {
+        [VectorWidth::Four, VectorWidth::Eight]
+            .into_iter()
+            .for_each(runs_in_each_shape);
     }
 
-    fn runs_in_each_shape(breadth: Breadth) {
+    fn runs_in_each_shape(vector_width: VectorWidth) {
         let ops = vec![
             Op::Prepared(1),
             Op::Constant(2.0),
@@ -195,9 +199,9 @@ mod tests {
             outputs,
             curves: Vec::new(),
         };
-        let code = |shape| Code::new(&Vectors::default(), &program, shape, breadth);
-        let shapes = [Shape::Once, Shape::Sets, Shape::Points(&[Part::Constants])];
-        if !breadth.is_there() {
+        let code = |shape| Code::new(&Vectors::default(), &program, shape, vector_width);
+        let shapes = [Shape::Single, Shape::Sets, Shape::Points(&[Part::Constants])];
+        if !vector_width.is_supported() {
             return assert!(shapes.into_iter().all(|shape| code(shape).is_none()));
         }
         let [once, sets, points] = shapes.map(|shape| code(shape).expect("the program has a translation"));

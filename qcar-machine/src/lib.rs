@@ -1,33 +1,33 @@
 //! Machine code for models that are read at run time.
 //!
-//! [`Machine`] is the interpreter of `qcar-dsl` with its programs as instructions of x86-64. It runs the same
-//! operations in the order of the program, as one instruction each, without fusing any, and calls the functions of
-//! Rust. So the bits are those of the interpreter, except for the payload of NaN.
+//! [`Machine`] translates the programs of a compiled model to instructions of x86-64. Each operation becomes one
+//! instruction in the order of the program, multiplications and additions are not fused, and functions such as `sin`
+//! are calls to Rust. So results have the bits of the interpreter of `qcar-dsl`, except for the payload of NaN.
 
 // Shapes of a program: for one point, eight sets, or rows of points.
 mod shape;
-// Positions of the leaves in the arguments.
+// Where a program finds its inputs in the arguments.
 #[cfg(target_arch = "x86_64")]
 mod reads;
-// What is left to Rust's functions.
+// Operations by functions of Rust.
 #[cfg(target_arch = "x86_64")]
 mod call;
-// Instructions as bytes.
+// The encoding of instructions.
 #[cfg(target_arch = "x86_64")]
 mod assemble;
-// Values in registers.
+// Register allocation.
 #[cfg(target_arch = "x86_64")]
 mod values;
-// Operations as instructions.
+// Translation of operations to instructions.
 #[cfg(target_arch = "x86_64")]
 mod translate;
-// Instructions run.
+// Executable memory, and calls of its code.
 #[cfg(target_arch = "x86_64")]
 mod code;
-// On other processors, where there are none.
+// The replacement on other processors: no machine code.
 #[cfg(not(target_arch = "x86_64"))]
-mod elsewhere;
-// A model whose programs are machine code.
+mod unsupported;
+// The trait `Model` by machine code.
 mod machine;
 
 pub use machine::Machine;

@@ -11,16 +11,16 @@ use qcar_model::{About, Contact, Contacts, LANES, Lanes, Model, Points, Response
 
 #[cfg(target_arch = "x86_64")]
 use crate::code::Code;
+use crate::shape::{Shape, VectorWidth};
 #[cfg(not(target_arch = "x86_64"))]
-use crate::elsewhere::Code;
-use crate::shape::{Breadth, Shape};
+use crate::unsupported::Code;
 
 /// A compiled model, its programs translated into machine code.
 ///
 /// Slices have the lengths that [`About`] states; a shorter one panics.
 #[derive(Debug)]
 pub struct Machine {
-    breadth: Breadth,
+    vector_width: VectorWidth,
     /// The interpreter, for programs without machine code.
     interpreter: Evaluator,
     vectors: Vectors,
@@ -50,24 +50,26 @@ struct Routine {
     few: OnceLock<Option<Code>>,
 }
 
-/// The parts that vary from point to point.
-const MOVING: Shape = Shape::Points(&[Part::States, Part::Inputs]);
+/// Points with their own states and inputs.
+const SAMPLES: Shape = Shape::Points(&[Part::States, Part::Inputs]);
+/// Lines of a frequency response.
 const LINES: Shape = Shape::Points(&[Part::Frequency]);
 
 impl Machine {
-    /// A machine for a compiled model, with the widest vectors of this processor. Nothing is translated yet.
+    /// The machine code of a compiled model, with the widest vectors of this processor. Each program is translated on
+    /// first use.
     pub fn new(compiled: &Compiled) -> Self {
-        Self::with(compiled, Breadth::widest())
+        Self::with(compiled, VectorWidth::widest())
     }
 
-    /// The same with vectors of four numbers (AVX), whatever the processor has. The bits are the same.
-    pub fn narrow(compiled: &Compiled) -> Self {
-        Self::with(compiled, Breadth::Four)
+    /// The same with vectors of four numbers (AVX) even if the processor has AVX-512. Results have the same bits.
+    pub fn with_avx(compiled: &Compiled) -> Self {
+        Self::with(compiled, VectorWidth::Four)
     }
 
-    fn with(compiled: &Compiled, breadth: Breadth) -> Self {
+    fn with(compiled: &Compiled, vector_width: VectorWidth) -> Self {
         Machine {
-            breadth,
+            vector_width,
             interpreter: Evaluator::new(compiled),
             vectors: compiled.vectors.clone(),
             responses: compiled.programs.responses.iter().map(|_| Default::default()).collect(),
@@ -85,32 +87,32 @@ impl Machine {
         }
     }
 
-    /// The same with a further model of a single link.
+    /// The same with the model of a single link in addition ([`Model::alone`]).
     pub fn with_alone(mut self, axis: &str, link: &str, compiled: &Compiled) -> Self {
         let mut links = self.about().links.iter();
         let place = links.position(|own| own.axis == axis && own.name == link);
         self.alone
-            .extend(place.map(|place| (place, Machine::with(compiled, self.breadth))));
+            .extend(place.map(|place| (place, Machine::with(compiled, self.vector_width))));
         self
     }
 
     #[inline]
     fn code<'a>(&self, known: &'a OnceLock<Option<Code>>, program: &Program, shape: Shape) -> Option<&'a Code> {
-        let new = || Code::new(&self.vectors, program, shape, self.breadth);
+        let new = || Code::new(&self.vectors, program, shape, self.vector_width);
         known.get_or_init(new).as_ref()
     }
 
     fn points<'a>(&self, routine: &'a Routine, program: &Program, shape: Shape, points: usize) -> Option<&'a Code> {
-        if self.breadth == Breadth::Four || points >= LANES {
+        if self.vector_width == VectorWidth::Four || points >= LANES {
             return self.code(&routine.points, program, shape);
         }
-        let new = || Code::new(&self.vectors, program, shape, Breadth::Four);
+        let new = || Code::new(&self.vectors, program, shape, VectorWidth::Four);
         routine.few.get_or_init(new).as_ref()
     }
 
     #[inline]
     fn once<'a>(&self, routine: &'a Routine, program: &Program) -> Option<&'a Code> {
-        self.code(&routine.once, program, Shape::Once)
+        self.code(&routine.once, program, Shape::Single)
     }
 
     #[inline]
@@ -118,9 +120,9 @@ impl Machine {
         self.code(&routine.sets, program, Shape::Sets)
     }
 
-    /// Computes several points; false if that is left to the interpreter.
+    /// Evaluates a program at several points; false if there is no machine code for it.
     fn sweep(&self, routine: &Routine, program: &Program, given: &Arguments, points: usize, into: &mut [f64]) -> bool {
-        let code = self.points(routine, program, MOVING, points);
+        let code = self.points(routine, program, SAMPLES, points);
         code.is_some_and(|code| code.sweep(given, points, &mut [into]))
     }
 }
@@ -209,28 +211,28 @@ impl Model for Machine {
 
     fn derivative_sets(&self, constants: &[Lanes], x: &[Lanes], u: &[Lanes], dx: &mut [Lanes]) {
         match self.sets(&self.derivative, &self.programs.derivative) {
-            Some(code) => code.sets(&moving_sets((Part::Constants, constants), x, u), dx),
+            Some(code) => code.sets(&state_sets((Part::Constants, constants), x, u), dx),
             None => self.interpreter.derivative_sets(constants, x, u, dx),
         }
     }
 
     fn outputs_sets(&self, constants: &[Lanes], x: &[Lanes], u: &[Lanes], y: &mut [Lanes]) {
         match self.sets(&self.outputs, &self.programs.outputs) {
-            Some(code) => code.sets(&moving_sets((Part::Constants, constants), x, u), y),
+            Some(code) => code.sets(&state_sets((Part::Constants, constants), x, u), y),
             None => self.interpreter.outputs_sets(constants, x, u, y),
         }
     }
 
     fn matrices_sets(&self, p: &[Lanes], x: &[Lanes], u: &[Lanes], nonzeros: &mut [Lanes]) {
         match self.sets(&self.matrices, &self.programs.matrices) {
-            Some(code) => code.sets(&moving_sets((Part::Parameters, p), x, u), nonzeros),
+            Some(code) => code.sets(&state_sets((Part::Parameters, p), x, u), nonzeros),
             None => self.interpreter.matrices_sets(p, x, u, nonzeros),
         }
     }
 
     fn sensitivities_sets(&self, p: &[Lanes], x: &[Lanes], u: &[Lanes], nonzeros: &mut [Lanes]) {
         match self.sets(&self.sensitivities, &self.programs.sensitivities) {
-            Some(code) => code.sets(&moving_sets((Part::Parameters, p), x, u), nonzeros),
+            Some(code) => code.sets(&state_sets((Part::Parameters, p), x, u), nonzeros),
             None => self.interpreter.sensitivities_sets(p, x, u, nonzeros),
         }
     }
@@ -335,7 +337,7 @@ impl Model for Machine {
             return self.interpreter.rolling_derivative_sets(constants, x, u, contacts, dx);
         };
         let contact = [contacts.s, contacts.v, contacts.force[0], contacts.force[1]];
-        let [constants, x, u] = moving_sets((Part::Constants, constants), x, u);
+        let [constants, x, u] = state_sets((Part::Constants, constants), x, u);
         code.sets(&[constants, x, u, (Part::Contact, &contact)], dx);
     }
 
@@ -347,6 +349,6 @@ impl Model for Machine {
 
 type ArgumentSets<'a> = [(Part, &'a [Lanes]); 3];
 
-fn moving_sets<'a>(of_set: (Part, &'a [Lanes]), x: &'a [Lanes], u: &'a [Lanes]) -> ArgumentSets<'a> {
+fn state_sets<'a>(of_set: (Part, &'a [Lanes]), x: &'a [Lanes], u: &'a [Lanes]) -> ArgumentSets<'a> {
     [of_set, (Part::States, x), (Part::Inputs, u)]
 }

@@ -1,4 +1,4 @@
-//! Positions of the leaves of a program in the arguments of its code.
+//! Where the code of a program finds the leaves, its inputs, in the arguments.
 
 use qcar_dsl::evaluate::arguments::{Part, place};
 use qcar_dsl::program::{Program, Value};

@@ -1,4 +1,4 @@
-//! Shapes of the code of a program, and widths of its vectors.
+//! Shapes of the code of a program: for how many points or parameter sets a call computes it, and with which vectors.
 
 use qcar_dsl::evaluate::arguments::Part;
 
@@ -6,26 +6,26 @@ use qcar_dsl::evaluate::arguments::Part;
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Shape {
     /// At one point.
-    Once,
-    /// For [`qcar_model::LANES`] sets, with a row for each entry.
+    Single,
+    /// For [`qcar_model::LANES`] parameter sets, with a row for each entry.
     Sets,
     /// At many points, with a row for each entry of the varying parts.
     Points(&'static [Part]),
 }
 
-/// Number of values in a vector, for several sets or points.
+/// Width of the vectors for several sets or points, in numbers.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Breadth {
+pub enum VectorWidth {
     /// AVX.
     Four,
     /// AVX-512.
     Eight,
 }
 
-impl Breadth {
+impl VectorWidth {
     /// The widest vectors of this processor.
     pub fn widest() -> Self {
-        if Self::Eight.is_there() {
+        if Self::Eight.is_supported() {
             Self::Eight
         } else {
             Self::Four
@@ -33,7 +33,7 @@ impl Breadth {
     }
 
     /// True if this processor has such vectors.
-    pub fn is_there(self) -> bool {
+    pub fn is_supported(self) -> bool {
         #[cfg(target_arch = "x86_64")]
         return match self {
             Self::Four => std::arch::is_x86_feature_detected!("avx"),

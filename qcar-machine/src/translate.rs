@@ -10,7 +10,7 @@ use crate::assemble::{Arithmetic, Assembler, Bits, Comparison, Operand, Pointer,
 use crate::call::Call;
 use crate::reads::{Leaf, Reads};
 use crate::shape::Shape;
-use crate::values::{OWN, Values};
+use crate::values::{SCRATCH, Values};
 use frame::{Frame, Place};
 
 /// A constant as wide as the widest register; narrower registers read its beginning.
@@ -18,8 +18,8 @@ use frame::{Frame, Place};
 #[repr(C, align(64))]
 pub struct Wide(pub [f64; 8]);
 
-/// Constants before those of the program, for signs and directions.
-const OWN_NUMBERS: [f64; 4] = [-0.0, f64::from_bits(!SIGN), 1.0, 0.0];
+/// Constants that operations need, stored before those of the program.
+const FIXED_CONSTANTS: [f64; 4] = [-0.0, f64::from_bits(!SIGN), 1.0, 0.0];
 const SIGN: u64 = 1 << 63;
 const SIGN_BIT: usize = 0;
 const ALL_BUT_SIGN: usize = 1;
@@ -34,23 +34,28 @@ pub struct Translated {
     /// Calls; the code contains the address of each.
     pub calls: Box<[Call]>,
     /// Constants of the program.
-    pub numbers: Box<[Wide]>,
+    pub constants: Box<[Wide]>,
 }
 
-/// Translates a program. `enter` is the address of the function that computes a [`Call`].
+/// Translates a program. `compute_call` is the address of the function that computes a [`Call`].
 ///
 /// `None` if the program reads more parts than there are registers for addresses, or needs too much stack.
-pub fn translate(program: &Program, reads: &Reads, (shape, width): (Shape, Width), enter: usize) -> Option<Translated> {
+pub fn translate(
+    program: &Program,
+    reads: &Reads,
+    (shape, width): (Shape, Width),
+    compute_call: usize,
+) -> Option<Translated> {
     if reads.parts.len() > frame::parts(shape) {
         return None;
     }
     let calls: Box<[Call]> = program.ops.iter().filter_map(|&op| Call::of(program, op)).collect();
-    let mut writer = Writer::new(program, reads, (shape, width), &calls, enter);
+    let mut writer = Writer::new(program, reads, (shape, width), &calls, compute_call);
     writer.program();
-    let code = writer.frame.around(writer.body, writer.values.slots())?;
+    let code = writer.frame.finish(writer.body, writer.values.slots())?;
     Some(Translated {
         code,
-        numbers: writer.numbers.into(),
+        constants: writer.constants.into(),
         calls,
     })
 }
@@ -62,13 +67,13 @@ struct Writer<'a> {
     frame: Frame,
     values: Values,
     body: Assembler,
-    numbers: Vec<Wide>,
+    constants: Vec<Wide>,
     /// Position of the constant of each value of the program.
-    number: Vec<Option<usize>>,
+    constant: Vec<Option<usize>>,
     /// Results, as sorted pairs of value and position.
     results: Vec<(Value, usize)>,
     calls: std::slice::Iter<'a, Call>,
-    enter: usize,
+    compute_call: usize,
 }
 
 impl<'a> Writer<'a> {
@@ -77,17 +82,17 @@ impl<'a> Writer<'a> {
         reads: &'a Reads,
         (shape, width): (Shape, Width),
         calls: &'a [Call],
-        enter: usize,
+        compute_call: usize,
     ) -> Self {
-        let mut numbers: Vec<Wide> = OWN_NUMBERS.map(|number| Wide([number; 8])).into();
-        let number = program.ops.iter().map(|op| match *op {
+        let mut constants: Vec<Wide> = FIXED_CONSTANTS.map(|number| Wide([number; 8])).into();
+        let constant = program.ops.iter().map(|op| match *op {
             Op::Constant(number) => {
-                numbers.push(Wide([number; 8]));
-                Some(numbers.len() - 1)
+                constants.push(Wide([number; 8]));
+                Some(constants.len() - 1)
             }
             _ => None,
         });
-        let number = number.collect();
+        let constant = constant.collect();
         let results = program.outputs.iter().enumerate();
         let mut results: Vec<(Value, usize)> = results.map(|(place, &value)| (value, place)).collect();
         results.sort_unstable();
@@ -97,11 +102,11 @@ impl<'a> Writer<'a> {
             frame: Frame::new(shape, width, calls),
             values: Values::new(program, width),
             body: Assembler::default(),
-            numbers,
-            number,
+            constants,
+            constant,
             results,
             calls: calls.iter(),
-            enter,
+            compute_call,
         }
     }
 
@@ -117,30 +122,30 @@ impl<'a> Writer<'a> {
                 .chain([value])
                 .for_each(|done| self.values.release(done));
         }
-        self.values.clear().for_each(drop);
+        self.values.evict_all().for_each(drop);
         self.frame.repeat(&mut self.body, start);
     }
 
     fn operation(&mut self, value: Value, op: Op) {
         match op {
             Op::Constant(_) | Op::Input(_) | Op::Prepared(_) => {}
-            Op::Add(a, b) => self.either_way(Arithmetic::Add, value, a, b),
-            Op::Mul(a, b) => self.either_way(Arithmetic::Mul, value, a, b),
+            Op::Add(a, b) => self.commutative(Arithmetic::Add, value, a, b),
+            Op::Mul(a, b) => self.commutative(Arithmetic::Mul, value, a, b),
             Op::Sub(a, b) => self.arithmetic(Arithmetic::Sub, value, a, b),
             Op::Div(a, b) => self.arithmetic(Arithmetic::Div, value, a, b),
-            Op::Min(a, b) => self.extreme(Arithmetic::Min, value, a, b),
-            Op::Max(a, b) => self.extreme(Arithmetic::Max, value, a, b),
+            Op::Min(a, b) => self.min_or_max(Arithmetic::Min, value, a, b),
+            Op::Max(a, b) => self.min_or_max(Arithmetic::Max, value, a, b),
             Op::Neg(a) => self.bits(Bits::Xor, value, a, SIGN_BIT),
             Op::Call(Function::Abs, a) => self.bits(Bits::And, value, a, ALL_BUT_SIGN),
             Op::Call(Function::Sign, a) => self.sign(value, a),
-            Op::Call(Function::Sqrt, a) => self.root(value, a),
+            Op::Call(Function::Sqrt, a) => self.square_root(value, a),
             Op::Select(test, a, b) => self.select(value, test, a, b),
             Op::Call(..) | Op::Pow(..) | Op::Table(..) => self.call(value, op),
         }
     }
 
     /// An operation with interchangeable operands.
-    fn either_way(&mut self, what: Arithmetic, value: Value, a: Value, b: Value) {
+    fn commutative(&mut self, what: Arithmetic, value: Value, a: Value, b: Value) {
         let swap = self.values.register(a).is_none() && self.values.register(b).is_some();
         let (a, b) = if swap { (b, a) } else { (a, b) };
         self.arithmetic(what, value, a, b);
@@ -155,7 +160,7 @@ impl<'a> Writer<'a> {
         self.body.arithmetic(what, self.width(), to, first, second);
     }
 
-    fn root(&mut self, value: Value, a: Value) {
+    fn square_root(&mut self, value: Value, a: Value) {
         let from = self.in_register(a);
         self.values.consume(a);
         let to = self.allocate(value);
@@ -167,44 +172,44 @@ impl<'a> Writer<'a> {
         let from = self.in_register(a);
         self.values.consume(a);
         let to = self.allocate(value);
-        let number = self.own_number(number);
+        let number = self.fixed_constant(number);
         self.body.bits(what, self.width(), to, from, number);
     }
 
     /// Minimum or maximum as in Rust: the other operand if one is NaN, the first if both are zero.
-    fn extreme(&mut self, what: Arithmetic, value: Value, a: Value, b: Value) {
-        let ([a, b], to) = self.apart(value, [a, b]);
+    fn min_or_max(&mut self, what: Arithmetic, value: Value, a: Value, b: Value) {
+        let ([a, b], to) = self.with_separate_result(value, [a, b]);
         let width = self.width();
         self.body.arithmetic(what, width, to, b, Operand::Register(a));
         self.body
-            .compare(Comparison::Unordered, width, OWN, a, Operand::Register(a));
-        self.body.blend(width, to, to, b, OWN);
+            .compare(Comparison::Unordered, width, SCRATCH, a, Operand::Register(a));
+        self.body.blend(width, to, to, b, SCRATCH);
     }
 
     /// 1 with the sign of `a`; zero and NaN are unchanged.
     fn sign(&mut self, value: Value, argument: Value) {
         let a = self.in_register(argument);
         let (to, width) = (self.allocate(value), self.width());
-        let [sign_bit, one, zero] = [SIGN_BIT, ONE, ZERO].map(|number| self.own_number(number));
-        self.body.bits(Bits::And, width, OWN, a, sign_bit);
-        self.body.bits(Bits::Or, width, OWN, OWN, one);
+        let [sign_bit, one, zero] = [SIGN_BIT, ONE, ZERO].map(|number| self.fixed_constant(number));
+        self.body.bits(Bits::And, width, SCRATCH, a, sign_bit);
+        self.body.bits(Bits::Or, width, SCRATCH, SCRATCH, one);
         self.body.compare(Comparison::EqualOrUnordered, width, to, a, zero);
-        self.body.blend(width, to, OWN, a, to);
+        self.body.blend(width, to, SCRATCH, a, to);
         self.values.consume(argument);
     }
 
     fn select(&mut self, value: Value, test: Value, a: Value, b: Value) {
         let test_register = self.in_register(test);
-        let zero = self.own_number(ZERO);
+        let zero = self.fixed_constant(ZERO);
         self.body
-            .compare(Comparison::Greater, self.width(), OWN, test_register, zero);
+            .compare(Comparison::Greater, self.width(), SCRATCH, test_register, zero);
         self.values.consume(test);
-        let ([a, b], to) = self.apart(value, [a, b]);
-        self.body.blend(self.width(), to, b, a, OWN);
+        let ([a, b], to) = self.with_separate_result(value, [a, b]);
+        self.body.blend(self.width(), to, b, a, SCRATCH);
     }
 
-    /// Two operands in registers, and another register for the result.
-    fn apart(&mut self, value: Value, arguments: [Value; 2]) -> ([Register; 2], Register) {
+    /// Two operands in registers, and a register for the result that differs from both.
+    fn with_separate_result(&mut self, value: Value, arguments: [Value; 2]) -> ([Register; 2], Register) {
         let registers = arguments.map(|argument| self.in_register(argument));
         let to = self.allocate(value);
         arguments.iter().for_each(|&argument| self.values.consume(argument));
@@ -217,20 +222,20 @@ impl<'a> Writer<'a> {
         let arguments: Vec<Value> = self.program.arguments(op).collect();
         for (place, &argument) in arguments.iter().enumerate() {
             let register = self.values.register(argument);
-            let register = register.unwrap_or_else(|| self.load(argument, OWN));
+            let register = register.unwrap_or_else(|| self.load(argument, SCRATCH));
             self.body.store(width, register, self.frame.argument(place));
         }
         arguments.iter().for_each(|&argument| self.values.consume(argument));
-        for (register, stood) in self.values.clear() {
-            self.keep(register, stood);
+        for (register, evicted) in self.values.evict_all() {
+            self.spill(register, evicted);
         }
         let own = self.calls.next().map_or(0, |call| std::ptr::from_ref(call) as u64);
         self.body.set(Pointer::RDI, own);
         self.body.address(Pointer::RSI, self.frame.argument(0));
         self.body.address(Pointer::RDX, self.frame.result());
-        self.body.set(Pointer::RAX, self.enter as u64);
+        self.body.set(Pointer::RAX, self.compute_call as u64);
         if width != Width::One {
-            self.body.narrow();
+            self.body.zero_upper();
         }
         self.body.call(Pointer::RAX);
         let to = self.allocate(value);
@@ -243,7 +248,7 @@ impl<'a> Writer<'a> {
         let places: Vec<usize> = own.map(|result| result.1).collect();
         for place in places {
             let register = self.values.register(value);
-            let register = register.unwrap_or_else(|| self.load(value, OWN));
+            let register = register.unwrap_or_else(|| self.load(value, SCRATCH));
             let to = self.frame.output(&mut self.body, place);
             self.body.store(self.width(), register, to);
         }
@@ -257,16 +262,16 @@ impl<'a> Writer<'a> {
     fn allocate(&mut self, value: Value) -> Register {
         let (register, evicted) = self.values.allocate(value);
         if let Some(evicted) = evicted {
-            self.keep(register, evicted);
+            self.spill(register, evicted);
         }
         register
     }
 
-    /// A computed value that leaves its register is stored in memory; a leaf is there already.
-    fn keep(&mut self, register: Register, value: Value) {
+    /// Stores a computed value that leaves its register; a leaf is in memory already.
+    fn spill(&mut self, register: Register, value: Value) {
         let is_leaf = self.program.ops[value.0 as usize].is_leaf();
         if !is_leaf && self.values.slot(value).is_none() {
-            let slot = self.values.keep(value);
+            let slot = self.values.spill(value);
             self.body.store(self.width(), register, self.frame.slot(slot));
         }
     }
@@ -281,12 +286,12 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// A value with a single remaining use stays in memory, and so does one that would displace another.
+    /// An operand is read from memory if this is its last use, or if no register is free.
     fn operand(&mut self, value: Value) -> Operand {
-        let waits = self.values.register(value).is_none();
-        if waits
-            && (self.values.is_last(value) || !self.values.has_room())
-            && let Place::Whole(place) = self.place(value)
+        let is_in_memory = self.values.register(value).is_none();
+        if is_in_memory
+            && (self.values.is_last(value) || !self.values.has_free_register())
+            && let Place::Vector(place) = self.place(value)
         {
             return Operand::Memory(place);
         }
@@ -296,8 +301,8 @@ impl<'a> Writer<'a> {
     fn load(&mut self, value: Value, to: Register) -> Register {
         let width = self.width();
         match self.place(value) {
-            Place::Whole(place) => self.body.load(width, to, place),
-            Place::Shared(place) => self.body.broadcast(width, to, place),
+            Place::Vector(place) => self.body.load(width, to, place),
+            Place::Broadcast(place) => self.body.broadcast(width, to, place),
         }
         to
     }
@@ -305,19 +310,19 @@ impl<'a> Writer<'a> {
     /// Memory operand of a value that is in no register.
     fn place(&mut self, value: Value) -> Place {
         if let Some(slot) = self.values.slot(value) {
-            return Place::Whole(self.frame.slot(slot));
+            return Place::Vector(self.frame.slot(slot));
         }
-        if let Some(number) = self.number[value.0 as usize] {
-            return Place::Whole(self.frame.number(number));
+        if let Some(constant) = self.constant[value.0 as usize] {
+            return Place::Vector(self.frame.constant(constant));
         }
         match self.reads.of(value) {
-            Some(Leaf::Row(row)) => Place::Whole(self.frame.row(&mut self.body, row)),
+            Some(Leaf::Row(row)) => Place::Vector(self.frame.row(&mut self.body, row)),
             Some(Leaf::Entry { part, entry }) => self.frame.entry(part, entry),
-            None => unreachable!("{value:?} is no leaf, and was computed without being kept"),
+            None => unreachable!("{value:?} is no leaf, and was not spilled"),
         }
     }
 
-    fn own_number(&self, number: usize) -> Operand {
-        Operand::Memory(self.frame.number(number))
+    fn fixed_constant(&self, number: usize) -> Operand {
+        Operand::Memory(self.frame.constant(number))
     }
 }

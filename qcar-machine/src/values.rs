@@ -7,15 +7,15 @@ use qcar_dsl::program::{Program, Value};
 
 use crate::assemble::{Register, Width};
 
-/// Registers reserved for the temporaries of an operation.
-pub const OWN: Register = Register(15);
+/// The register for intermediate results of an operation.
+pub const SCRATCH: Register = Register(15);
 
-/// Locations of the values of a program while its code is written.
+/// Register and memory slot of each value of a program while its code is written.
 pub struct Values {
     /// Positions of the operations that use a value, value by value.
-    needed: Vec<u32>,
-    /// Remaining uses of each value, as a range of these.
-    rest: Vec<(u32, u32)>,
+    uses: Vec<u32>,
+    /// The remaining uses of each value, as a range of `uses`.
+    remaining: Vec<(u32, u32)>,
     /// Value in each register.
     registers: Vec<Option<Value>>,
     register: Vec<Option<Register>>,
@@ -25,30 +25,30 @@ pub struct Values {
 }
 
 impl Values {
-    /// No value anywhere, with the number of registers for this width.
+    /// Before the first operation: no value has a register or a slot.
     pub fn new(program: &Program, width: Width) -> Self {
         let count = program.ops.len();
-        let mut rest = vec![(0, 0); count + 1];
+        let mut remaining = vec![(0, 0); count + 1];
         for &op in &program.ops {
             for value in program.arguments(op) {
-                rest[value.0 as usize + 1].0 += 1;
+                remaining[value.0 as usize + 1].0 += 1;
             }
         }
         for value in 0..count {
-            rest[value + 1].0 += rest[value].0;
-            rest[value].1 = rest[value].0;
+            remaining[value + 1].0 += remaining[value].0;
+            remaining[value].1 = remaining[value].0;
         }
-        let mut needed = vec![0; rest[count].0 as usize];
+        let mut uses = vec![0; remaining[count].0 as usize];
         for (place, &op) in program.ops.iter().enumerate() {
             for value in program.arguments(op) {
-                let end = &mut rest[value.0 as usize].1;
-                needed[*end as usize] = place as u32;
+                let end = &mut remaining[value.0 as usize].1;
+                uses[*end as usize] = place as u32;
                 *end += 1;
             }
         }
         Values {
-            needed,
-            rest,
+            uses,
+            remaining,
             registers: vec![None; registers(width) - 1],
             register: vec![None; count],
             slot: vec![None; count],
@@ -73,43 +73,43 @@ impl Values {
     }
 
     /// True if a register is free.
-    pub fn has_room(&self) -> bool {
+    pub fn has_free_register(&self) -> bool {
         self.registers.iter().any(Option::is_none)
     }
 
     /// True if the present operation is the last use of a value.
     pub fn is_last(&self, value: Value) -> bool {
-        let (next, end) = self.rest[value.0 as usize];
-        let rest = &self.needed[next as usize..end as usize];
-        rest.first() == rest.last()
+        let (next, end) = self.remaining[value.0 as usize];
+        let remaining = &self.uses[next as usize..end as usize];
+        remaining.first() == remaining.last()
     }
 
-    /// An operation uses a value. If it is the last one, the result may get its register.
+    /// Counts a use of a value. After the last one its register is free, so the result may get it.
     pub fn consume(&mut self, value: Value) {
-        self.rest[value.0 as usize].0 += 1;
+        self.remaining[value.0 as usize].0 += 1;
         if self.next(value).is_none() {
-            self.leave(value);
+            self.free_register(value);
         }
     }
 
-    /// Frees the locations of a value without further uses, after an operation is complete.
+    /// Frees register and slot of a value without further uses, after an operation is complete.
     pub fn release(&mut self, value: Value) {
         if self.next(value).is_none() {
-            self.leave(value);
+            self.free_register(value);
             self.free_slots.extend(self.slot[value.0 as usize].take());
         }
     }
 
-    fn leave(&mut self, value: Value) {
+    fn free_register(&mut self, value: Value) {
         if let Some(register) = self.register[value.0 as usize].take() {
             self.registers[place_of(register)] = None;
         }
     }
 
-    /// A register for a value, and the value that it is taken from.
+    /// Assigns a register to a value; returns it with the value that is evicted from it.
     pub fn allocate(&mut self, value: Value) -> (Register, Option<Value>) {
         let free = self.registers.iter().position(Option::is_none);
-        let place = free.unwrap_or_else(|| self.last_needed());
+        let place = free.unwrap_or_else(|| self.farthest_use());
         let register = register_at(place);
         let evicted = self.registers[place].replace(value);
         if let Some(evicted) = evicted {
@@ -119,8 +119,8 @@ impl Values {
         (register, evicted)
     }
 
-    /// A memory slot for a value.
-    pub fn keep(&mut self, value: Value) -> u32 {
+    /// Assigns a memory slot to a value that leaves its register.
+    pub fn spill(&mut self, value: Value) -> u32 {
         let slot = self.free_slots.pop().unwrap_or_else(|| {
             self.slots += 1;
             self.slots - 1
@@ -130,22 +130,22 @@ impl Values {
     }
 
     /// Frees all registers, and returns their values.
-    pub fn clear(&mut self) -> impl Iterator<Item = (Register, Value)> + use<> {
+    pub fn evict_all(&mut self) -> impl Iterator<Item = (Register, Value)> + use<> {
         let none = vec![None; self.registers.len()];
         let registers = std::mem::replace(&mut self.registers, none);
         for value in registers.iter().flatten() {
             self.register[value.0 as usize] = None;
         }
-        let stood = registers.into_iter().enumerate();
-        stood.filter_map(|(place, value)| Some((register_at(place), value?)))
+        let evicted = registers.into_iter().enumerate();
+        evicted.filter_map(|(place, value)| Some((register_at(place), value?)))
     }
 
     fn next(&self, value: Value) -> Option<u32> {
-        let (next, end) = self.rest[value.0 as usize];
-        (next < end).then(|| self.needed[next as usize])
+        let (next, end) = self.remaining[value.0 as usize];
+        (next < end).then(|| self.uses[next as usize])
     }
 
-    fn last_needed(&self) -> usize {
+    fn farthest_use(&self) -> usize {
         let next = |place: &usize| self.registers[*place].map(|value| self.next(value));
         (0..self.registers.len()).max_by_key(next).unwrap_or_default()
     }
@@ -158,12 +158,12 @@ fn registers(width: Width) -> usize {
     }
 }
 
-/// All registers but [`OWN`].
+/// All registers but [`SCRATCH`].
 fn register_at(place: usize) -> Register {
     let place = place as u8;
-    Register(place + u8::from(place >= OWN.0))
+    Register(place + u8::from(place >= SCRATCH.0))
 }
 
 fn place_of(register: Register) -> usize {
-    usize::from(register.0 - u8::from(register.0 > OWN.0))
+    usize::from(register.0 - u8::from(register.0 > SCRATCH.0))
 }

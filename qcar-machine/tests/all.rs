@@ -1,6 +1,6 @@
 //! Machine code, judged by the interpreter bit by bit.
 
-mod both;
+mod comparison;
 mod models;
 mod programs;
 #[path = "../../qcar-dsl/tests/common/programs.rs"]

@@ -1,4 +1,4 @@
-//! Whole models, shipped ones and those that no axle is: every operation of the language, and effects.
+//! Shipped models, and models that use every operation of the language.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use qcar_dsl::disk::compile_file;
 use qcar_dsl::schedule::Compiled;
 
-use super::both::{At, Both};
+use super::comparison::{At, Comparison};
 
 fn files() -> Vec<PathBuf> {
     let folders = ["../models/axles", "../models/tests/zoo"];
@@ -30,7 +30,7 @@ fn every_model_has_the_bits_of_the_interpreter() {
     let files = files();
     assert!(files.len() > 20, "the test sees {} models", files.len());
     for file in files {
-        let both = Both::new(&compiled(&file));
+        let both = Comparison::new(&compiled(&file));
         let numbers = || prop::collection::vec(-1.0..1.0f64, 256);
         let config = ProptestConfig {
             failure_persistence: None,

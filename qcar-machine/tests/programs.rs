@@ -10,11 +10,12 @@ use qcar_dsl::schedule::Compiled;
 use qcar_machine::Machine;
 use qcar_model::{LANES, Lanes, Model, Points};
 
-use super::both::Both;
+use super::comparison::Comparison;
 use super::models::compiled;
 use super::random::{KINDS, PREPARED, prepared, program, steps};
 
 const POINTS: usize = 13;
+
 /// A mass on a tyre, with another program for its equations of motion.
 fn with_derivative(program: impl FnOnce(&[Symbol]) -> Program) -> Compiled {
     let mut compiled = compiled(Path::new("../models/axles/quarter_car.axle"));
@@ -24,9 +25,9 @@ fn with_derivative(program: impl FnOnce(&[Symbol]) -> Program) -> Compiled {
     compiled
 }
 
-/// At one point, at several, and for sets.
-fn judge(compiled: &Compiled, given: &[f64]) {
-    let both = Both::new(compiled);
+/// Compares the derivative at one point, at several, and for sets.
+fn compare(compiled: &Compiled, given: &[f64]) {
+    let both = Comparison::new(compiled);
     let results = compiled.programs.derivative.outputs.len();
     let (states, inputs) = (compiled.vectors.states.len(), compiled.vectors.inputs.len());
     let (constants, rest) = given.split_at(PREPARED);
@@ -72,23 +73,23 @@ proptest! {
         given in given(),
     ) {
         let compiled = with_derivative(|symbols| program(symbols, &prepared, &numbers, &steps, 3));
-        judge(&compiled, &given);
+        compare(&compiled, &given);
     }
 
-    /// Without calls, which would empty the registers again and again.
+    /// Every call evicts all registers; without calls they stay full.
     #[test]
-    fn so_has_arithmetic_alone(
+    fn arithmetic_without_calls_has_the_bits_of_the_interpreter(
         prepared in prepared(20),
         steps in steps(5, 900),
         given in given(),
     ) {
         let compiled = with_derivative(|symbols| program(symbols, &prepared, &[2.5], &steps, 3));
-        judge(&compiled, &given);
+        compare(&compiled, &given);
     }
 }
 
-/// So many values that all wait for a sum at the end: `called` of a function, before them.
-fn waiting(symbols: &[Symbol], count: u32, called: bool) -> Program {
+/// A program with this many products that are all used in a sum at its end, after a call if `called`.
+fn long_lived_values(symbols: &[Symbol], count: u32, called: bool) -> Program {
     let mut ops: Vec<Op> = symbols.iter().copied().map(Op::Input).collect();
     let first = ops.len() as u32;
     let mut last = Value(0);
@@ -113,20 +114,23 @@ fn waiting(symbols: &[Symbol], count: u32, called: bool) -> Program {
     }
 }
 
-/// A page of the stack, several, and more than there may be.
+/// Less than a page of stack, several pages, and more than a frame may have.
 #[test]
-fn many_values_wait_on_the_stack() {
+fn many_values_are_spilled_to_the_stack() {
     let given: Vec<f64> = (0..PREPARED + 12 * POINTS)
         .map(|place| 1.0 + 1e-3 * place as f64)
         .collect();
     for count in [10, 120, 1000, 7000, 20_000] {
         for called in [false, true] {
-            judge(&with_derivative(|symbols| waiting(symbols, count, called)), &given);
+            compare(
+                &with_derivative(|symbols| long_lived_values(symbols, count, called)),
+                &given,
+            );
         }
     }
 }
 
-/// No code runs on memory that is not there.
+/// Machine code does not check lengths, so its caller must.
 #[test]
 fn slices_that_are_too_short_panic() {
     let compiled = compiled(Path::new("../models/axles/axle_d.axle"));

@@ -31,8 +31,8 @@ pub mod bootstrap;
 mod forecast;
 // The measured or predicted motion of a place.
 mod record;
-// The same for a run that was not measured.
-mod supposed;
+// A run that was not measured, as the model predicts it.
+mod predicted_run;
 // Sensors, runs and levels that could be measured in addition.
 mod candidate;
 // The information that each of them would add.

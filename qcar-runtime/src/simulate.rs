@@ -9,7 +9,7 @@ mod failure;
 // Accuracy of a simulation.
 mod settings;
 // Interpolation between the samples of a smooth motion.
-mod gap;
+mod interpolation;
 // Sampling through an anti-alias filter.
 mod sampling;
 // The static equilibrium of a model.
@@ -19,13 +19,13 @@ mod car;
 // The equations of motion while the tyre rolls over a road.
 mod rolling;
 // Faster integration of linear axles.
-mod shortcut;
+mod exponential;
 // The signals recorded during a ride.
 mod recorder;
 // Rides over a road.
 mod ride;
 // Integration of several smooth motions with common steps.
-mod formation;
+mod batch;
 // Several rides integrated together.
 mod abreast;
 // Derivatives of rides by parameters.

@@ -59,7 +59,7 @@ pub trait System {
     ///
     /// A method of high order loses its order across a kink, so a step ends there. The error control would also find
     /// the kink, but by failed steps, and short ones until it is passed.
-    fn next_bend(&self, _t: f64, _x: &[f64], _dx: &[f64], _from: f64) -> f64 {
+    fn next_kink(&self, _t: f64, _x: &[f64], _dx: &[f64], _from: f64) -> f64 {
         f64::INFINITY
     }
 
@@ -184,6 +184,23 @@ impl std::ops::AddAssign for Effort {
         self.rejected += other.rejected;
         self.events += other.events;
     }
+}
+
+/// Integrates the smooth legs of a span in turn, until one stops before its end; returns the last reason and time.
+#[inline(always)]
+fn over_legs(
+    span: (f64, f64),
+    breaks: &[f64],
+    mut integrate: impl FnMut((f64, f64)) -> (Reason, f64),
+) -> (Reason, f64) {
+    let (mut reason, mut time) = (Reason::End, span.0);
+    for leg in legs(span, breaks) {
+        (reason, time) = integrate(leg);
+        if reason != Reason::End {
+            break;
+        }
+    }
+    (reason, time)
 }
 
 /// The smooth legs of a span: its ends and the breaks inside it, pairwise.

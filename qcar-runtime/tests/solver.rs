@@ -495,7 +495,7 @@ impl System for Bent {
         dx[0] = (3.0 * t).sin() + 20.0 * (t - BEND).max(0.0) - x[0];
     }
 
-    fn next_bend(&self, _: f64, _: &[f64], _: &[f64], from: f64) -> f64 {
+    fn next_kink(&self, _: f64, _: &[f64], _: &[f64], from: f64) -> f64 {
         if self.foreseen && from < BEND {
             BEND
         } else {

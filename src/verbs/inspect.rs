@@ -74,7 +74,7 @@ struct Channel<'a> {
     mean: Option<f64>,
     rms: Option<f64>,
     labels: Vec<(f64, &'a str)>,
-    doubt: Option<&'a str>,
+    unit_warning: Option<&'a str>,
 }
 
 #[derive(Serialize)]
@@ -131,7 +131,7 @@ impl<'a> Channel<'a> {
                 .iter()
                 .map(|(value, text)| (*value, text.as_str()))
                 .collect(),
-            doubt: summary.doubt.as_deref(),
+            unit_warning: summary.unit_warning.as_deref(),
         }
     }
 }
@@ -161,14 +161,14 @@ pub(super) fn text<T>(contents: &Contents<T>) -> String {
     if !recording.signals.is_empty() {
         text += &format!("\n{}", table(contents));
     }
-    let doubted = contents
+    let suspicious = contents
         .channels()
-        .filter_map(|(signal, summary)| Some((signal, summary.doubt.as_ref()?)));
-    let doubts: String = doubted
-        .map(|(signal, doubt)| format!("{}: {doubt}\n", signal.full_name()))
+        .filter_map(|(signal, summary)| Some((signal, summary.unit_warning.as_ref()?)));
+    let warnings: String = suspicious
+        .map(|(signal, unit_warning)| format!("{}: {unit_warning}\n", signal.full_name()))
         .collect();
-    if !doubts.is_empty() {
-        text += &format!("\nunits of the file that should be checked:\n{doubts}");
+    if !warnings.is_empty() {
+        text += &format!("\nunits of the file that should be checked:\n{warnings}");
     }
     if !recording.scalars.is_empty() {
         text += &format!("\n{}", scalars(&recording.scalars));

@@ -93,7 +93,7 @@ fn a_ride_attempts_no_more_steps_than_allowed_by_all_methods_together() {
     let effort = with(10_000).expect("it rides").effort;
     let steps = effort.accepted + effort.rejected;
     assert!(with(steps).is_ok());
-    // The shortcut takes most of them, and the last.
+    // The exponential method takes most of them, and the last.
     for most in [steps / 2, steps - 1] {
         let Err(SimulateError::Stopped { report, .. }) = with(most) else {
             panic!("{most} of {steps} steps are not enough");

@@ -110,7 +110,7 @@ fn derivatives_of_ridden_metrics_are_limits_of_differences() {
     hold(&ground, &parameters, 1e-4, 1e-6);
 }
 
-/// The rides of a linear axle are shortcuts at a tolerance of 1e-6. No elasticity is off by more than 5e-4 for it.
+/// The rides of a linear axle are integrated by the exponential method with a tolerance of 1e-6. No elasticity is off by more than 5e-4 for it.
 #[test]
 fn elasticities_at_the_usual_tolerance_are_those_of_exact_rides() {
     let values = cleat::parameters();

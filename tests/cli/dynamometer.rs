@@ -356,7 +356,7 @@ fn is_as_sure_as_its_fit(path: &str) {
     let own = succeeds(&["sensitivity", path, "--metrics", "mode.1.frequency", "--format", "json"]);
     let own: Value = serde_json::from_str(&own).unwrap();
     let (metric, k) = (&own["metrics"][0], &fitted["parameters"]["k"]);
-    let relative = metric["doubt"]["deviation"].as_f64().unwrap() / metric["value"].as_f64().unwrap();
+    let relative = metric["uncertainty"]["deviation"].as_f64().unwrap() / metric["value"].as_f64().unwrap();
     assert!(
         (relative / (0.5 * k["relative_stderr"].as_f64().unwrap()) - 1.0).abs() < 1e-6,
         "{metric} and {k}"

@@ -126,7 +126,7 @@ fn a_campaign_says_how_sure_its_metrics_are() {
         assert!(names.contains(&name), "{name} in {names:?}");
     }
     for own in metrics {
-        let shares = own["doubt"]["shares"].as_object().unwrap();
+        let shares = own["uncertainty"]["shares"].as_object().unwrap();
         let sum: f64 = shares.values().map(|share| share.as_f64().unwrap()).sum();
         assert!((sum - 1.0).abs() < 1e-9, "{}: {sum}", own["name"]);
     }
@@ -213,7 +213,7 @@ fn results_of_a_fit_are_a_subject() {
     );
     let found: Value = serde_json::from_str(&ran.stdout).unwrap();
     assert_eq!(found["model"], "axle_a");
-    assert!(found["metrics"][0]["doubt"]["deviation"].as_f64().unwrap() > 0.0);
+    assert!(found["metrics"][0]["uncertainty"]["deviation"].as_f64().unwrap() > 0.0);
 }
 
 #[test]
@@ -411,7 +411,7 @@ fn a_metric_or_parameter_that_is_not_there_is_refused() {
     }
 }
 
-/// What is not known of one parameter leaves a metric in as much doubt, whichever parameters are looked at.
+/// The uncertainty of a metric includes that of each parameter, whichever are shown.
 #[test]
 fn intervals_do_not_depend_on_the_parameters_that_are_shown() {
     let axle = [
@@ -424,7 +424,7 @@ fn intervals_do_not_depend_on_the_parameters_that_are_shown() {
     let (all, one) = (of(&[]), of(&["--parameters", "k_tire"]));
     for metric in 0..2_usize {
         assert_eq!(one[metric]["elasticities"].as_object().unwrap().len(), 1);
-        let [all, one] = [&all, &one].map(|own| own[metric]["doubt"]["deviation"].as_f64().unwrap());
+        let [all, one] = [&all, &one].map(|own| own[metric]["uncertainty"]["deviation"].as_f64().unwrap());
         assert!((one / all - 1.0).abs() < 1e-9, "{one} and {all}");
     }
 }

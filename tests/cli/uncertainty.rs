@@ -64,20 +64,20 @@ fn what_is_not_known_counts_as_the_closed_form_has_it() {
     assert_eq!(answer["uncertainty"]["all"], target["holds"]);
     // The variance of a product of two even distributions, to first order, and that of a square root.
     let relative = 0.5 * (0.01 / 3.0 + (0.002 * 80.0_f64).powi(2) / 12.0).sqrt();
-    let (value, doubt) = (target["design"].as_f64().unwrap(), &target["doubt"]);
+    let (value, uncertainty) = (target["design"].as_f64().unwrap(), &target["uncertainty"]);
     assert!(
-        (doubt["deviation"].as_f64().unwrap() / (relative * value) - 1.0).abs() < 1e-6,
-        "{doubt}"
+        (uncertainty["deviation"].as_f64().unwrap() / (relative * value) - 1.0).abs() < 1e-6,
+        "{uncertainty}"
     );
-    let middle = 0.5 * (doubt["interval"][0].as_f64().unwrap() + doubt["interval"][1].as_f64().unwrap());
+    let middle = 0.5 * (uncertainty["interval"][0].as_f64().unwrap() + uncertainty["interval"][1].as_f64().unwrap());
     assert!(
         (middle / (value * (1.0 + 0.5 * 0.002 * 10.0)) - 1.0).abs() < 1e-6,
-        "{doubt}"
+        "{uncertainty}"
     );
     let temperature = (0.002 * 80.0_f64).powi(2) / 12.0 / (4.0 * relative * relative);
     assert!(
-        (doubt["sources"]["temperature"].as_f64().unwrap() - temperature).abs() < 1e-6,
-        "{doubt}"
+        (uncertainty["sources"]["temperature"].as_f64().unwrap() - temperature).abs() < 1e-6,
+        "{uncertainty}"
     );
     let [low, high] = [0, 1].map(|end| stiffness["interval"][end].as_f64().unwrap());
     // Within the box `k` lies evenly: the part of it below the limit, for each of what it may turn out as.
@@ -90,7 +90,7 @@ fn what_is_not_known_counts_as_the_closed_form_has_it() {
     let ran = run_line(folder.path(), "target sure.toml --set k_body=60 --format json");
     let sure: Value = serde_json::from_str(&ran.stdout).unwrap();
     assert!(
-        sure["uncertainty"].is_null() && sure["targets"][0]["doubt"].is_null(),
+        sure["uncertainty"].is_null() && sure["targets"][0]["uncertainty"].is_null(),
         "{sure}"
     );
     assert!(sure["parameters"][0]["design"].as_f64().unwrap() < 0.99 * design);
@@ -126,7 +126,7 @@ fn a_fit_counts_in_targets_with_its_correlations() {
     };
     let [own, results, none] = ["campaign.toml", "results.toml", "none.toml"].map(answer);
     for at in 0..2 {
-        let deviation = |of: &Value| of["targets"][at]["doubt"]["deviation"].as_f64().unwrap();
+        let deviation = |of: &Value| of["targets"][at]["uncertainty"]["deviation"].as_f64().unwrap();
         assert!(
             (deviation(&own) / deviation(&results) - 1.0).abs() < 1e-6,
             "{own}\n{results}"
@@ -141,8 +141,8 @@ fn a_fit_counts_in_targets_with_its_correlations() {
     let design = own["parameters"][0]["design"].as_f64().unwrap() / own["parameters"][0]["today"].as_f64().unwrap();
     assert!((design - 1.0).abs() < 1e-9, "today's design is the cheapest: {own}");
     for at in 0..2 {
-        let other = found["metrics"][at]["doubt"]["deviation"].as_f64().unwrap();
-        let deviation = own["targets"][at]["doubt"]["deviation"].as_f64().unwrap();
+        let other = found["metrics"][at]["uncertainty"]["deviation"].as_f64().unwrap();
+        let deviation = own["targets"][at]["uncertainty"]["deviation"].as_f64().unwrap();
         assert!((deviation / other - 1.0).abs() < 1e-6, "{deviation} and {other}");
     }
 }
@@ -195,11 +195,11 @@ fn a_temperature_moves_a_metric_and_its_mean() {
     let own: Value = serde_json::from_str(&succeeds(&line.split(' ').collect::<Vec<_>>())).unwrap();
     let metric = &own["metrics"][0];
     let value = metric["value"].as_f64().unwrap();
-    let [low, high] = [0, 1].map(|end| metric["doubt"]["interval"][end].as_f64().unwrap() / value);
+    let [low, high] = [0, 1].map(|end| metric["uncertainty"]["interval"][end].as_f64().unwrap() / value);
     let reach = 1.96 * 0.5 * 0.004 * 60.0 / 12.0_f64.sqrt();
     assert!((low - (1.0 - 0.5 * 0.004 * 10.0 - reach)).abs() < 1e-6, "{metric}");
     assert!((high - (1.0 - 0.5 * 0.004 * 10.0 + reach)).abs() < 1e-6, "{metric}");
-    assert_eq!(metric["doubt"]["sources"]["temperature"], 1.0);
+    assert_eq!(metric["uncertainty"]["sources"]["temperature"], 1.0);
     for (line, said) in [
         (["--temperature", "40..-20"], "the lower first"),
         (["--temperature", "-20..40"], "--per-kelvin"),

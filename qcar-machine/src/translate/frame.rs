@@ -11,15 +11,16 @@ use crate::shape::Shape;
 use crate::translate::Wide;
 use qcar_model::LANES;
 
-/// Bytes of a number, and of the widest register.
-const NUMBER: usize = 8;
-const ROOM: usize = size_of::<Wide>();
-/// Bytes of a page: the system maps the stack page by page, and each must be touched in turn.
+/// Bytes of a number.
+const NUMBER_BYTES: usize = 8;
+/// Bytes of the widest register.
+const VECTOR_BYTES: usize = size_of::<Wide>();
+/// Bytes of a page: the system maps the stack page by page, and each must be accessed in turn.
 const PAGE: usize = 4096;
 /// Largest stack frame of a call.
-const LARGEST: usize = 64 * PAGE;
+const MAX_FRAME_BYTES: usize = 64 * PAGE;
 
-const GIVEN: [Pointer; 6] = [
+const ARGUMENTS: [Pointer; 6] = [
     Pointer::RDI,
     Pointer::RSI,
     Pointer::RDX,
@@ -44,20 +45,20 @@ const END: usize = 4;
 /// Arguments of the other shapes.
 const RESULTS: usize = 4;
 /// The last argument of both.
-const NUMBERS: usize = 5;
+const CONSTANTS: usize = 5;
 
 /// Memory operand of a value.
 pub enum Place {
-    /// As many numbers as an instruction uses, so that it can read them directly.
-    Whole(Memory),
-    /// One number that all points share.
-    Shared(Memory),
+    /// All numbers of a vector, which an instruction can read directly.
+    Vector(Memory),
+    /// One number that all points share; it is loaded into every lane.
+    Broadcast(Memory),
 }
 
 /// Largest number of parts that a program can read entry by entry.
 pub fn parts(shape: Shape) -> usize {
     match shape {
-        Shape::Once | Shape::Sets => RESULTS,
+        Shape::Single | Shape::Sets => RESULTS,
         Shape::Points(_) => ROWS,
     }
 }
@@ -66,12 +67,12 @@ pub fn parts(shape: Shape) -> usize {
 pub struct Frame {
     shape: Shape,
     /// Registers of the arguments.
-    given: [Pointer; 6],
+    arguments: [Pointer; 6],
     calls: bool,
     /// Number of values in a vector.
     pub width: Width,
     /// Position of the arguments of calls on the stack.
-    arguments: usize,
+    call_arguments: usize,
 }
 
 impl Frame {
@@ -80,19 +81,19 @@ impl Frame {
         Frame {
             shape,
             width,
-            given: if calls.is_empty() { GIVEN } else { PRESERVED },
+            arguments: if calls.is_empty() { ARGUMENTS } else { PRESERVED },
             calls: !calls.is_empty(),
-            arguments: calls.iter().map(Call::arguments).max().unwrap_or(0),
+            call_arguments: calls.iter().map(Call::arguments).max().unwrap_or(0),
         }
     }
 
     /// An entry of a part.
     pub fn entry(&self, part: usize, entry: usize) -> Place {
-        let own = self.given[part];
+        let own = self.arguments[part];
         match self.shape {
-            Shape::Once => Place::Whole(at(own, NUMBER * entry)),
-            Shape::Sets => Place::Whole(at(own, LANES * NUMBER * entry)),
-            Shape::Points(_) => Place::Shared(at(own, NUMBER * entry)),
+            Shape::Single => Place::Vector(at(own, NUMBER_BYTES * entry)),
+            Shape::Sets => Place::Vector(at(own, LANES * NUMBER_BYTES * entry)),
+            Shape::Points(_) => Place::Broadcast(at(own, NUMBER_BYTES * entry)),
         }
     }
 
@@ -104,65 +105,65 @@ impl Frame {
     /// Destination of a result.
     pub fn output(&self, body: &mut Assembler, place: usize) -> Memory {
         match self.shape {
-            Shape::Once => at(self.given[RESULTS], NUMBER * place),
-            Shape::Sets => at(self.given[RESULTS], LANES * NUMBER * place),
+            Shape::Single => at(self.arguments[RESULTS], NUMBER_BYTES * place),
+            Shape::Sets => at(self.arguments[RESULTS], LANES * NUMBER_BYTES * place),
             Shape::Points(_) => self.points(body, ROWS_WRITTEN, place),
         }
     }
 
     fn points(&self, body: &mut Assembler, rows: usize, row: usize) -> Memory {
-        body.load_pointer(Pointer::RAX, at(self.given[rows], NUMBER * row));
+        body.load_pointer(Pointer::RAX, at(self.arguments[rows], NUMBER_BYTES * row));
         Memory {
             base: Pointer::RAX,
-            index: Some(self.given[OFFSET]),
+            index: Some(self.arguments[OFFSET]),
             offset: 0,
         }
     }
 
     /// A constant of the program.
-    pub fn number(&self, number: usize) -> Memory {
-        at(self.given[NUMBERS], ROOM * number)
+    pub fn constant(&self, place: usize) -> Memory {
+        at(self.arguments[CONSTANTS], VECTOR_BYTES * place)
     }
 
     /// Position of an argument of a call on the stack, after the previous stack pointer.
     pub fn argument(&self, place: usize) -> Memory {
-        at(Pointer::RSP, ROOM * (1 + place))
+        at(Pointer::RSP, VECTOR_BYTES * (1 + place))
     }
 
     /// Result of a call.
     pub fn result(&self) -> Memory {
-        self.argument(self.arguments)
+        self.argument(self.call_arguments)
     }
 
     /// A spilled value.
     pub fn slot(&self, slot: u32) -> Memory {
         at(
             Pointer::RSP,
-            ROOM * (2 + self.arguments) + self.width.bytes() * slot as usize,
+            VECTOR_BYTES * (2 + self.call_arguments) + self.width.bytes() * slot as usize,
         )
     }
 
     /// After the last operation: continues with the next points, at `start`.
     pub fn repeat(&self, body: &mut Assembler, start: usize) {
         if let Shape::Points(_) = self.shape {
-            body.add(self.given[OFFSET], self.width.bytes() as i32);
-            body.repeat_while_below(self.given[OFFSET], self.given[END], start);
+            body.add(self.arguments[OFFSET], self.width.bytes() as i32);
+            body.jump_back_while_below(self.arguments[OFFSET], self.arguments[END], start);
         }
     }
 
     /// The complete function; `None` if it would need too much stack.
-    pub fn around(&self, body: Assembler, slots: u32) -> Option<Vec<u8>> {
+    pub fn finish(&self, body: Assembler, slots: u32) -> Option<Vec<u8>> {
         let needs_stack = self.calls || slots > 0;
-        let bytes = ROOM * (2 + self.arguments) + self.width.bytes() * slots as usize;
-        if bytes > LARGEST {
+        let bytes = VECTOR_BYTES * (2 + self.call_arguments) + self.width.bytes() * slots as usize;
+        if bytes > MAX_FRAME_BYTES {
             return None;
         }
         let mut before = Assembler::default();
         if self.calls {
             PRESERVED.iter().for_each(|&own| before.push(own));
-            self.given
+            self.arguments
                 .iter()
-                .zip(GIVEN)
+                .zip(ARGUMENTS)
                 .for_each(|(&to, from)| before.copy(to, from));
         }
         if needs_stack {
@@ -176,7 +177,7 @@ impl Frame {
             PRESERVED.iter().rev().for_each(|&own| after.pop(own));
         }
         if self.width != Width::One {
-            after.narrow();
+            after.zero_upper();
         }
         after.ret();
         Some([before, body, after].map(Assembler::into_bytes).concat())
@@ -188,10 +189,10 @@ fn enter(before: &mut Assembler, bytes: usize) {
     before.copy(Pointer::RAX, Pointer::RSP);
     for _ in 0..bytes / PAGE {
         before.add(Pointer::RSP, -(PAGE as i32));
-        before.touch(at(Pointer::RSP, 0));
+        before.probe(at(Pointer::RSP, 0));
     }
     before.add(Pointer::RSP, -((bytes % PAGE) as i32));
-    before.and(Pointer::RSP, -(ROOM as i8));
+    before.and(Pointer::RSP, -(VECTOR_BYTES as i8));
     before.store_pointer(Pointer::RAX, at(Pointer::RSP, 0));
 }
 

@@ -1,8 +1,8 @@
 //! Candidate measurements: levels with a sensor, a run, a higher level or a wider band added.
 
 use super::observation::Level;
+use super::predicted_run::{PredictedRun, quantity};
 use super::record::Record;
-use super::supposed::{Run, quantity};
 use crate::campaign::Role;
 use crate::model::{About, Model, Quantity, Signal, SignalKind};
 use crate::response::parameters::Values;
@@ -54,9 +54,9 @@ pub(super) struct Candidate {
 /// All measurements that could be added to the fitted levels.
 pub(super) fn candidates<M: Model + ?Sized>(model: &M, values: &Values, levels: &[Level]) -> Vec<Candidate> {
     let fitted: Vec<&Level> = levels.iter().filter(|level| level.role == Role::Fit).collect();
-    let runs: Vec<Run<'_, M>> = fitted
+    let runs: Vec<PredictedRun<'_, M>> = fitted
         .iter()
-        .filter_map(|level| Run::new(model, values, level))
+        .filter_map(|level| PredictedRun::new(model, values, level))
         .collect();
     let with = |kind: Kind, what: String, level: Level| Candidate {
         kind,
@@ -84,7 +84,7 @@ pub(super) fn candidates<M: Model + ?Sized>(model: &M, values: &Values, levels: 
 }
 
 /// A candidate for each output that no fitted run along its axis records.
-fn sensors<M: Model + ?Sized>(about: &About, runs: &[Run<'_, M>], fitted: &[&Level]) -> Vec<Candidate> {
+fn sensors<M: Model + ?Sized>(about: &About, runs: &[PredictedRun<'_, M>], fitted: &[&Level]) -> Vec<Candidate> {
     let mut found: Vec<Candidate> = Vec::new();
     for output in about.outputs.iter() {
         let signal = match output.signal.kind {
@@ -94,7 +94,7 @@ fn sensors<M: Model + ?Sized>(about: &About, runs: &[Run<'_, M>], fitted: &[&Lev
             },
             _ => output.signal.clone(),
         };
-        let with: Vec<(&Run<'_, M>, Record)> = runs
+        let with: Vec<(&PredictedRun<'_, M>, Record)> = runs
             .iter()
             .filter_map(|run| Some((run, run.sensor(&signal)?)))
             .collect();
@@ -118,7 +118,7 @@ fn sensors<M: Model + ?Sized>(about: &About, runs: &[Run<'_, M>], fitted: &[&Lev
 
 /// A run for each excitation that no fitted run uses, with the sensors of the fitted runs along its axis, or else one
 /// at every mass.
-fn excitations<M: Model + ?Sized>(about: &About, runs: &[Run<'_, M>]) -> Vec<(String, Level)> {
+fn excitations<M: Model + ?Sized>(about: &About, runs: &[PredictedRun<'_, M>]) -> Vec<(String, Level)> {
     let unused = (0..about.excitations.len()).filter(|own| runs.iter().all(|run| run.level.excitation != *own));
     let driven = |excitation: usize| {
         let own = &about.excitations[excitation];
@@ -129,7 +129,7 @@ fn excitations<M: Model + ?Sized>(about: &About, runs: &[Run<'_, M>]) -> Vec<(St
 }
 
 /// The measured accelerations along an axis, or else all that the model has.
-fn places<M: ?Sized>(about: &About, runs: &[Run<'_, M>], axis: &str) -> Vec<Signal> {
+fn places<M: ?Sized>(about: &About, runs: &[PredictedRun<'_, M>], axis: &str) -> Vec<Signal> {
     let records = runs.iter().flat_map(|run| &run.records).map(|record| &record.signal);
     let outputs = about.outputs.iter().map(|output| &output.signal);
     let mut found: Vec<Signal> = Vec::new();

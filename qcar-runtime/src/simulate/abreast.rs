@@ -5,9 +5,9 @@
 use std::iter::Enumerate;
 use std::slice;
 
+use super::batch::Batch;
 use super::car::Car;
 use super::failure::SimulateError;
-use super::formation::Formation;
 use super::recorder::RecordedSignals;
 use super::ride::{Drive, Journey, Ride};
 use super::settings::Settings;
@@ -34,12 +34,12 @@ pub fn rides_abreast<'a, M: Model + ?Sized>(
         kept,
         done,
         waiting: rides.iter().enumerate(),
-        rooms: Vec::new(),
+        buffers: Vec::new(),
         last: None,
-        formation: None,
+        batch: None,
         lanes: [const { None }; LANES],
     };
-    (0..LANES).for_each(|place| abreast.occupy(place, None));
+    (0..LANES).for_each(|place| abreast.fill_lane(place, None));
     while abreast.lanes.iter().any(Option::is_some) {
         abreast.go_on();
     }
@@ -52,38 +52,38 @@ struct Abreast<'r, 'a, M: ?Sized, D> {
     done: D,
     waiting: Enumerate<slice::Iter<'r, RideCase<'a>>>,
     /// Buffers of completed records, for further rides.
-    rooms: Vec<Vec<f64>>,
+    buffers: Vec<Vec<f64>>,
     /// Parameters of the last ride that was started, and its exponential method: rides of the same car often follow
     /// each other.
     last: Option<(&'a [f64], ExponentialAdams<2>)>,
-    formation: Option<Formation<'a, M>>,
+    batch: Option<Batch<'a, M>>,
     lanes: [Option<Lane<'a, M>>; LANES],
 }
 
 /// A ride, by its number.
 type Numbered<'a, M> = (usize, Journey<'a, M>);
 
-/// A ride in the formation.
+/// A ride in the batch.
 struct Lane<'a, M: ?Sized> {
     ride: Numbered<'a, M>,
     /// Steps that may still be attempted.
     left: usize,
 }
 
-/// If no rides wait and at most this many are left, each continues alone: a step of the formation takes as long for one
+/// If no rides wait and at most this many are left, each continues alone: a step of the batch takes as long for one
 /// ride as for eight.
 const FEW: usize = 1;
 
 impl<'a, M: Model + ?Sized, D: FnMut(usize, Result<Ride, SimulateError>)> Abreast<'_, 'a, M, D> {
     /// Integrates a ride until its tyre's force is smooth, then puts it into a lane. If the ride ends before, the next
     /// one follows.
-    fn occupy(&mut self, place: usize, mut coming: Option<Numbered<'a, M>>) {
+    fn fill_lane(&mut self, place: usize, mut coming: Option<Numbered<'a, M>>) {
         while let Some((number, mut journey)) = coming.take().or_else(|| self.next()) {
             match journey.advance() {
                 Err(error) => (self.done)(number, Err(error)),
                 Ok(false) => {
-                    let (ride, room) = journey.ride();
-                    self.rooms.push(room);
+                    let (ride, buffer) = journey.ride();
+                    self.buffers.push(buffer);
                     (self.done)(number, Ok(ride));
                 }
                 Ok(true) if self.joins(place, &mut journey) => {
@@ -108,14 +108,14 @@ impl<'a, M: Model + ?Sized, D: FnMut(usize, Result<Ride, SimulateError>)> Abreas
                 parameters,
                 ..*self.car
             };
-            let room = self.rooms.pop().unwrap_or_default();
+            let buffer = self.buffers.pop().unwrap_or_default();
             let of_car = |last: &&(&[f64], ExponentialAdams<2>)| last.0 == *parameters;
             let same = self.last.as_ref().filter(of_car).map(|last| &last.1);
             let is_new = same.is_none();
-            match Journey::new(&car, drive, self.settings, |grid| (grid, room), self.kept, same) {
+            match Journey::new(&car, drive, self.settings, |grid| (grid, buffer), self.kept, same) {
                 Ok(mut journey) => {
-                    if let Some((shortcut, _)) = journey.recorder.shortcut().filter(|_| is_new) {
-                        self.last = Some((*parameters, shortcut.method().clone()));
+                    if let Some((stepper, _)) = journey.recorder.stepper().filter(|_| is_new) {
+                        self.last = Some((*parameters, stepper.method().clone()));
                     }
                     return Some((number, journey));
                 }
@@ -124,51 +124,51 @@ impl<'a, M: Model + ?Sized, D: FnMut(usize, Result<Ride, SimulateError>)> Abreas
         }
     }
 
-    /// Puts a ride into a lane of the formation if it can join.
+    /// Puts a ride into a lane of the batch if it can join.
     fn joins(&mut self, place: usize, journey: &mut Journey<'a, M>) -> bool {
-        let Some((shortcut, rolling)) = journey.recorder.shortcut() else {
+        let Some((stepper, rolling)) = journey.recorder.stepper() else {
             return false;
         };
-        let formation = self.formation.get_or_insert_with(|| Formation::like(shortcut, rolling));
-        let fits = formation.fits(shortcut, rolling);
+        let batch = self.batch.get_or_insert_with(|| Batch::like(stepper, rolling));
+        let fits = batch.fits(stepper, rolling);
         if fits {
-            formation.take(place, shortcut, rolling);
+            batch.load(place, stepper, rolling);
         }
         fits
     }
 
-    /// Steps until a ride has to leave the formation, and fills its lane with the next.
+    /// Steps until a ride has to leave the batch, and fills its lane with the next.
     fn go_on(&mut self) {
-        let formation = self.formation.as_mut().expect("a ride is in it");
+        let batch = self.batch.as_mut().expect("a ride is in it");
         let leaving = loop {
-            let leaving = step(formation, &mut self.lanes);
+            let leaving = step(batch, &mut self.lanes);
             if leaving.contains(&true) {
                 break leaving;
             }
         };
         for place in (0..LANES).filter(|&place| leaving[place]) {
             if let Some(ride) = self.leave(place) {
-                self.occupy(place, Some(ride));
+                self.fill_lane(place, Some(ride));
             }
         }
         let riding = self.lanes.iter().flatten().count();
         if self.waiting.len() == 0 && riding <= FEW {
-            self.disband();
+            self.finish_one_by_one();
         }
     }
 
     /// Takes a ride out of its lane, with its present state.
     fn leave(&mut self, place: usize) -> Option<Numbered<'a, M>> {
         let (number, mut journey) = self.lanes[place].take()?.ride;
-        let (shortcut, _) = journey.recorder.shortcut()?;
-        self.formation.as_mut()?.give(place, shortcut, &mut journey.x);
-        let ended = shortcut.end();
+        let (stepper, _) = journey.recorder.stepper()?;
+        self.batch.as_mut()?.unload(place, stepper, &mut journey.x);
+        let ended = stepper.end();
         journey.hand_back(ended);
         Some((number, journey))
     }
 
     /// Integrates the remaining rides one by one to their ends.
-    fn disband(&mut self) {
+    fn finish_one_by_one(&mut self) {
         for place in 0..LANES {
             let Some(Lane {
                 ride: (number, mut journey),
@@ -177,8 +177,8 @@ impl<'a, M: Model + ?Sized, D: FnMut(usize, Result<Ride, SimulateError>)> Abreas
             else {
                 continue;
             };
-            if let (Some(formation), Some((shortcut, _))) = (&mut self.formation, journey.recorder.shortcut()) {
-                formation.give(place, shortcut, &mut journey.x);
+            if let (Some(batch), Some((stepper, _))) = (&mut self.batch, journey.recorder.stepper()) {
+                batch.unload(place, stepper, &mut journey.x);
             }
             journey.go_on();
             let ended = journey.finish();
@@ -187,11 +187,8 @@ impl<'a, M: Model + ?Sized, D: FnMut(usize, Result<Ride, SimulateError>)> Abreas
     }
 }
 
-/// A step of all rides in a formation. Returns those that have to leave it.
-fn step<M: Model + ?Sized>(
-    formation: &mut Formation<'_, M>,
-    lanes: &mut [Option<Lane<'_, M>>; LANES],
-) -> [bool; LANES] {
+/// A step of all rides in a batch. Returns those that have to leave it.
+fn step<M: Model + ?Sized>(batch: &mut Batch<'_, M>, lanes: &mut [Option<Lane<'_, M>>; LANES]) -> [bool; LANES] {
     let mut leaving = [false; LANES];
     for (place, lane) in lanes.iter_mut().enumerate() {
         let Some(Lane {
@@ -201,31 +198,35 @@ fn step<M: Model + ?Sized>(
         else {
             continue;
         };
-        let (shortcut, rolling) = journey.recorder.shortcut().expect("it has joined by one");
-        formation.lengthen(place, shortcut, rolling);
-        match shortcut.ahead() {
-            Some(time) if *left > 0 => formation.aim(place, time),
+        let (stepper, rolling) = journey.recorder.stepper().expect("it has joined by one");
+        batch.lengthen(place, stepper, rolling);
+        match stepper.ahead() {
+            Some(time) if *left > 0 => batch.set_time(place, time),
             _ => leaving[place] = true,
         }
     }
     if leaving.contains(&true) {
         return leaving;
     }
-    formation.predict();
+    batch.predict();
     let mut smooth = [false; LANES];
     for (place, lane) in lanes.iter_mut().enumerate() {
         if let Some(Lane { ride: (_, journey), .. }) = lane {
-            let (shortcut, rolling) = journey.recorder.shortcut().expect("it has joined by one");
-            smooth[place] = formation.touch(place, rolling, shortcut.centre());
+            let (stepper, rolling) = journey.recorder.stepper().expect("it has joined by one");
+            smooth[place] = batch.find_contact(place, rolling, stepper.centre());
         }
     }
-    let good = formation.advance(smooth);
-    if lanes.iter().flatten().any(|lane| !lane.ride.1.recorder.asks()) {
-        formation.find_rates();
+    let good = batch.advance(smooth);
+    if lanes
+        .iter()
+        .flatten()
+        .any(|lane| !lane.ride.1.recorder.computes_outputs())
+    {
+        batch.find_rates();
     }
     for (place, lane) in lanes.iter_mut().enumerate() {
         if let Some(lane) = lane {
-            note(formation, place, lane, good[place]);
+            note(batch, place, lane, good[place]);
             leaving[place] = !good[place];
         }
     }
@@ -234,17 +235,17 @@ fn step<M: Model + ?Sized>(
 
 /// Counts and records the step of a lane.
 #[inline]
-fn note<M: Model + ?Sized>(formation: &mut Formation<'_, M>, place: usize, lane: &mut Lane<'_, M>, good: bool) {
+fn note<M: Model + ?Sized>(batch: &mut Batch<'_, M>, place: usize, lane: &mut Lane<'_, M>, good: bool) {
     let recorder = &mut lane.ride.1.recorder;
-    let (shortcut, _) = recorder.shortcut().expect("it has joined by one");
-    shortcut.count(good.then(|| formation.centre(place)));
+    let (stepper, _) = recorder.stepper().expect("it has joined by one");
+    stepper.count(good.then(|| batch.centre(place)));
     if good {
         lane.left -= 1;
-        let (time, contact) = (formation.time(place), formation.contact(place));
-        if recorder.asks() {
-            recorder.record_step(time, formation.state(place), contact);
+        let (time, contact) = (batch.time(place), batch.contact(place));
+        if recorder.computes_outputs() {
+            recorder.record_step(time, batch.state(place), contact);
         } else {
-            recorder.record_lane(time, (formation.rates(), place), contact);
+            recorder.record_lane(time, (batch.rates(), place), contact);
         }
     }
 }

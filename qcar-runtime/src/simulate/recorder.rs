@@ -1,8 +1,8 @@
 //! The signals that are recorded while a model rolls over a road.
 
+use super::exponential::ExponentialStepper;
 use super::rolling::Rolling;
 use super::sampling::{Grid, Tape};
-use super::shortcut::Shortcut;
 use crate::model::{About, Contact, Lanes, Model};
 use crate::solver::{After, Effort, Event, Step, System};
 use crate::vectors::{Loops, widest};
@@ -10,7 +10,7 @@ use crate::vectors::{Loops, widest};
 /// A rolling model and its recorded signals.
 pub(super) struct Recorder<'a, M: ?Sized> {
     rolling: Rolling<'a, M>,
-    shortcut: Option<Shortcut>,
+    stepper: Option<ExponentialStepper>,
     /// Buffer for a state.
     state: Vec<f64>,
     /// Buffer for its rates, then the outputs if the model has to compute them, then force and deflection of the
@@ -61,8 +61,8 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
     /// A recorder of the signals that are `kept`, which reuses the memory of another tape.
     pub fn new(
         rolling: Rolling<'a, M>,
-        shortcut: Option<Shortcut>,
-        (grid, room): (Grid, Vec<f64>),
+        stepper: Option<ExponentialStepper>,
+        (grid, buffer): (Grid, Vec<f64>),
         about: &About,
         kept: &RecordedSignals,
     ) -> Self {
@@ -79,12 +79,12 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
         let recorded: Vec<usize> = places.iter().copied().flatten().chain(of_contact).collect();
         Self {
             rolling,
-            shortcut,
+            stepper,
             state: vec![0.0; states],
             rates: vec![0.0; states + asked + OF_CONTACT],
             places,
             first: recorded.iter().copied().min().unwrap_or(states),
-            tape: Tape::over(room, grid, recorded.len()),
+            tape: Tape::over(buffer, grid, recorded.len()),
             recorded,
             lift_offs: Vec::new(),
             landings: Vec::new(),
@@ -104,9 +104,9 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
         &self.rolling
     }
 
-    /// Stores the contact's force at the end of a step, for the shortcut.
+    /// Stores the contact's force at the end of a step, for the exponential method.
     fn note(&mut self, step: &Step<'_>) {
-        let Some(shortcut) = &mut self.shortcut else {
+        let Some(stepper) = &mut self.stepper else {
             return;
         };
         let force = step.end_rates().and_then(|rates| {
@@ -117,7 +117,7 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
             };
             (deflection > 0.0).then(|| self.rolling.driven(contact).force)
         });
-        shortcut.note(&self.rolling, step.end, step.end_state(), force);
+        stepper.note(&self.rolling, step.end, step.end_state(), force);
     }
 
     /// Records a sample at time `t` with its contact; [`Recorder::finish`] interpolates between it and the last one.
@@ -142,7 +142,7 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
     }
 
     /// True if some kept outputs are not rates, so that the model has to compute them.
-    pub fn asks(&self) -> bool {
+    pub fn computes_outputs(&self) -> bool {
         self.rates.len() > self.state.len() + OF_CONTACT
     }
 
@@ -178,28 +178,28 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
     }
 
     /// The memory of its tape, for another recorder.
-    pub fn into_room(self) -> Vec<f64> {
-        self.tape.into_room()
+    pub fn into_buffer(self) -> Vec<f64> {
+        self.tape.into_buffer()
     }
 
-    /// Integrates this ride by the shortcut, which has begun, for at most `most_steps` steps. Stores the state in `x`
-    /// and returns the time and the effort.
+    /// Integrates this ride by the exponential method, which has begun, for at most `most_steps` steps. Stores the
+    /// state in `x` and returns the time and the effort.
     pub fn go_on(&mut self, x: &mut [f64], most_steps: usize) -> (f64, Effort) {
-        let mut shortcut = self.shortcut.take().expect("it has taken over");
+        let mut stepper = self.stepper.take().expect("it has taken over");
         widest(Steps {
-            shortcut: &mut shortcut,
+            stepper: &mut stepper,
             recorder: self,
             most: most_steps,
         });
-        x.copy_from_slice(shortcut.state());
-        let ended = shortcut.end();
-        self.shortcut = Some(shortcut);
+        x.copy_from_slice(stepper.state());
+        let ended = stepper.end();
+        self.stepper = Some(stepper);
         ended
     }
 
-    /// The shortcut that has begun, and the equations of motion.
-    pub fn shortcut(&mut self) -> Option<(&mut Shortcut, &Rolling<'a, M>)> {
-        Some((self.shortcut.as_mut()?, &self.rolling))
+    /// The exponential method, and the equations of motion.
+    pub fn stepper(&mut self) -> Option<(&mut ExponentialStepper, &Rolling<'a, M>)> {
+        Some((self.stepper.as_mut()?, &self.rolling))
     }
 }
 
@@ -221,18 +221,21 @@ impl<M: Model + ?Sized> System for Recorder<'_, M> {
 
     fn enter(&mut self, t: f64, x: &mut [f64]) {
         self.rolling.pass_steps(t, x);
-        if let Some(shortcut) = &mut self.shortcut {
-            shortcut.pass(t);
+        if let Some(stepper) = &mut self.stepper {
+            stepper.pass(t);
         }
     }
 
-    fn next_bend(&self, t: f64, x: &[f64], dx: &[f64], from: f64) -> f64 {
-        let wanted = self.shortcut.as_ref().map_or(f64::INFINITY, Shortcut::next_time);
-        self.rolling.next_bend(t, x, dx, from).min(wanted)
+    fn next_kink(&self, t: f64, x: &[f64], dx: &[f64], from: f64) -> f64 {
+        let wanted = self
+            .stepper
+            .as_ref()
+            .map_or(f64::INFINITY, ExponentialStepper::next_time);
+        self.rolling.next_kink(t, x, dx, from).min(wanted)
     }
 
     fn takes_over(&mut self, t: f64, x: &[f64]) -> bool {
-        self.shortcut.as_mut().is_some_and(|shortcut| shortcut.begin(t, x))
+        self.stepper.as_mut().is_some_and(|stepper| stepper.begin(t, x))
     }
 
     fn accept(&mut self, step: &Step<'_>) {
@@ -292,9 +295,9 @@ impl<M: Model + ?Sized> Loops for Observation<'_, '_, M> {
     }
 }
 
-/// Steps of the shortcut, compiled for each instruction set.
+/// Steps of the exponential method, compiled for each instruction set.
 struct Steps<'s, 'r, 'a, M: ?Sized> {
-    shortcut: &'s mut Shortcut,
+    stepper: &'s mut ExponentialStepper,
     recorder: &'r mut Recorder<'a, M>,
     most: usize,
 }
@@ -305,10 +308,10 @@ impl<M: Model + ?Sized> Loops for Steps<'_, '_, '_, M> {
     #[inline(always)]
     fn run(self) {
         for _ in 0..self.most {
-            let Some((time, contact)) = self.shortcut.step(&self.recorder.rolling) else {
+            let Some((time, contact)) = self.stepper.step(&self.recorder.rolling) else {
                 break;
             };
-            self.recorder.record_step(time, self.shortcut.state(), contact);
+            self.recorder.record_step(time, self.stepper.state(), contact);
         }
     }
 }

@@ -1,12 +1,12 @@
 //! Rides over a road at constant speed.
 
 use super::car::Car;
+use super::exponential::ExponentialStepper;
 use super::failure::{SimulateError, positive};
 use super::recorder::{RecordedSignals, Recorder};
 use super::rolling::Rolling;
 use super::sampling::{AntiAlias, Grid};
 use super::settings::{Integrator, Settings, judged};
-use super::shortcut::Shortcut;
 use crate::model::{About, Model};
 use crate::progress::{self, OnProgress};
 use crate::road::Road;
@@ -97,7 +97,7 @@ pub fn end_of_ride<M: Model + ?Sized>(
     Ok((journey.x, journey.effort))
 }
 
-/// A ride that is being integrated: by the general method near kinks of the force, and by its recorder's shortcut where
+/// A ride that is being integrated: by the general method near kinks of the force, and by its recorder's exponential method where
 /// the force is smooth.
 pub(super) struct Journey<'a, M: ?Sized> {
     pub recorder: Recorder<'a, M>,
@@ -116,7 +116,7 @@ pub(super) struct Journey<'a, M: ?Sized> {
 
 impl<'a, M: Model + ?Sized> Journey<'a, M> {
     /// A car at rest on flat ground, at the time at which it begins to move. `recorded` reduces the grid of the samples
-    /// to the recorded points, and `room` is a buffer for them. The exponential method may be that of another ride of
+    /// to the recorded points, and `buffer` is a buffer for them. The exponential method may be that of another ride of
     /// the `same` car.
     pub fn new(
         car: &Car<'a, M>,
@@ -132,9 +132,9 @@ impl<'a, M: Model + ?Sized> Journey<'a, M> {
         let start = drive.start(&tyre).min(grid.start());
         let (rolling, x) = Rolling::at_rest(car, drive.road, drive.speed, start)?;
         let span = (drive.reaches(&tyre).max(start), grid.end());
-        let shortcut = Shortcut::new(&rolling, about, settings, &grid, same);
+        let stepper = ExponentialStepper::new(&rolling, about, settings, &grid, same);
         let static_deflection = rolling.deflection(span.0, &x);
-        let mut recorder = Recorder::new(rolling, shortcut, recorded(grid), about, kept);
+        let mut recorder = Recorder::new(rolling, stepper, recorded(grid), about, kept);
         recorder.rest(span.0, &x);
         Ok(Self {
             about,
@@ -210,7 +210,7 @@ impl<'a, M: Model + ?Sized> Journey<'a, M> {
             traction: self.recorder.rolling().traction,
             effort: self.effort,
         };
-        (ride, self.recorder.into_room())
+        (ride, self.recorder.into_buffer())
     }
 }
 

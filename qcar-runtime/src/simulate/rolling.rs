@@ -261,7 +261,7 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
     /// True if the force of the tyre is not smooth between two positions of the wheel's centre: its rim has passed an
     /// edge of the road, or it is a point contact on uneven ground.
     #[inline(always)]
-    pub fn bends_between(&self, from: [f64; 2], to: [f64; 2]) -> bool {
+    pub fn has_kink_between(&self, from: [f64; 2], to: [f64; 2]) -> bool {
         let squared = self.tyre.radius() * self.tyre.radius();
         let inside = |centre: [f64; 2], edge: &[f64; 2]| {
             let [x, z] = [centre[0] - edge[0], centre[1] - edge[1]];
@@ -308,7 +308,7 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
 
     /// The first time after `from` at which the rim of the tyre reaches or leaves an edge of the road, predicted at
     /// time `t`.
-    pub fn next_bend(&self, t: f64, x: &[f64], dx: &[f64], from: f64) -> f64 {
+    pub fn next_kink(&self, t: f64, x: &[f64], dx: &[f64], from: f64) -> f64 {
         let (wheel, radius) = (self.wheel(t, x), self.tyre.radius());
         let acceleration = [self.wheel.x.map_or(0.0, |x| dx[x[1]]), dx[self.wheel.z[1]]];
         let near = self.edges_near(wheel.position);

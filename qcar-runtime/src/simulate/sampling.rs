@@ -1,6 +1,6 @@
 //! Sampling of signals as by a recorder: on a fine grid, through an anti-alias filter, at the sample rate.
 
-use super::gap::Gap;
+use super::interpolation::SparseRange;
 use crate::vectors::{Loops, widest};
 
 /// The anti-alias filter: linear phase, without delay, flat within 0.02 % up to 0.4 of the sample rate.
@@ -180,7 +180,7 @@ pub(super) struct Tape {
     /// Number of samples at the beginning that are equal.
     still: usize,
     /// Ranges that were left out.
-    gaps: Vec<Gap>,
+    sparse: Vec<SparseRange>,
 }
 
 impl Tape {
@@ -196,13 +196,13 @@ impl Tape {
             next: 0,
             tracks: room,
             still: 0,
-            gaps: Vec::new(),
+            sparse: Vec::new(),
             grid,
         }
     }
 
     /// Its memory, for another tape.
-    pub fn into_room(self) -> Vec<f64> {
+    pub fn into_buffer(self) -> Vec<f64> {
         self.tracks
     }
 
@@ -251,9 +251,9 @@ impl Tape {
             self.next += 1;
         }
         let to = self.next / every;
-        match self.gaps.last_mut() {
-            Some(gap) if gap.to == from && gap.stride == to - from => gap.to = to,
-            _ => self.gaps.push(Gap {
+        match self.sparse.last_mut() {
+            Some(range) if range.to == from && range.stride == to - from => range.to = to,
+            _ => self.sparse.push(SparseRange {
                 from,
                 to,
                 stride: to - from,
@@ -265,8 +265,8 @@ impl Tape {
     /// Interpolates the points that were left out.
     pub fn fill_in(&mut self) {
         let (every, length) = (self.grid.filter.oversampling, self.grid.points_of_phase());
-        for gap in &self.gaps {
-            gap.fill(&mut self.tracks, (every, length));
+        for range in &self.sparse {
+            range.fill(&mut self.tracks, (every, length));
         }
     }
 
@@ -282,7 +282,7 @@ impl Tape {
             out.extend(filter.decimate_phases(|phase| &self.track(signal, phase)[from..], end - from));
         };
         let still = 0..self.still.saturating_sub(2 * AntiAlias::REACH);
-        for smooth in std::iter::once(still).chain(self.gaps.iter().map(Gap::all_smooth)) {
+        for smooth in std::iter::once(still).chain(self.sparse.iter().map(SparseRange::all_smooth)) {
             // A smooth signal passes the filter unchanged.
             let (start, end) = (smooth.start.min(samples), smooth.end.min(samples));
             filter_to(&mut out, start);

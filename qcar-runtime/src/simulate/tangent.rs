@@ -207,8 +207,8 @@ impl<M: Model + ?Sized> System for PerturbedModels<'_, M> {
             .for_each(|rolling| rolling.pass_steps(t, x));
     }
 
-    fn next_bend(&self, t: f64, z: &[f64], dz: &[f64], from: f64) -> f64 {
-        self.rolling.next_bend(t, &z[..self.states], &dz[..self.states], from)
+    fn next_kink(&self, t: f64, z: &[f64], dz: &[f64], from: f64) -> f64 {
+        self.rolling.next_kink(t, &z[..self.states], &dz[..self.states], from)
     }
 
     fn accept(&mut self, step: &Step<'_>) {

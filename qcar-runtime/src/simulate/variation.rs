@@ -192,6 +192,23 @@ impl<'a, M: Model + ?Sized> Direction<'a, M> {
             other: (!other.is_touched_like(rolling)).then_some((other, by)),
         }
     }
+
+    /// Replaces the rows of the derivatives of A and B by their positions among the forced states.
+    fn renumber(&mut self, forced: &[usize]) {
+        let rows = self.a.iter_mut().chain(&mut self.b).map(|entry| &mut entry.0);
+        rows.for_each(|row| *row = forced.partition_point(|own| own < row));
+    }
+}
+
+/// Derivatives of the states at rest: a row for each state, with the directions in its lanes.
+fn slopes_at_rest<M: ?Sized>(directions: &[Direction<'_, M>], states: usize, lanes: usize) -> Vec<f64> {
+    let mut slopes = vec![0.0; states * lanes];
+    for (lane, direction) in directions.iter().enumerate() {
+        for (state, slope) in direction.state.iter().enumerate() {
+            slopes[state * lanes + lane] = *slope;
+        }
+    }
+    slopes
 }
 
 /// A ride and its derivatives at a point of the grid.
@@ -275,22 +292,14 @@ impl<'a, M: Model + ?Sized> Variation<'a, M> {
         mut x: Vec<f64>,
     ) -> Option<Self> {
         let forced = forced(&axle, &directions);
-        for direction in &mut directions {
-            let rows = direction.a.iter_mut().chain(&mut direction.b).map(|entry| &mut entry.0);
-            rows.for_each(|row| *row = forced.partition_point(|own| own < row));
-        }
+        directions.iter_mut().for_each(|direction| direction.renumber(&forced));
         let spacing = grid.spacing();
         let hold = Hold::new(&axle.a, &forced, spacing)?;
         let pushed = DMatrix::from_fn(forced.len(), GIVEN, |place, axis| axle.b[(forced[place], axis)]);
         let time = grid.start() + ((begins - grid.start()) / spacing).floor() * spacing;
         // A multiple of the number that is computed together.
         let lanes = directions.len().next_multiple_of(4);
-        let mut slopes = vec![0.0; x.len() * lanes];
-        for (lane, direction) in directions.iter().enumerate() {
-            for (state, slope) in direction.state.iter().enumerate() {
-                slopes[state * lanes + lane] = *slope;
-            }
-        }
+        let slopes = slopes_at_rest(&directions, x.len(), lanes);
         let signals = axle.c.nrows() * lanes;
         let touching = rolling.touching();
         let contact = ContactInputs::new(&rolling, &touching, time, &mut x);
@@ -317,14 +326,18 @@ impl<'a, M: Model + ?Sized> Variation<'a, M> {
             lanes,
             slopes,
         };
-        variation.vary_given();
-        variation.act_beside_contact();
-        variation.act_by_contact();
-        variation.show();
-        variation
-            .tape
-            .record_rest(time - 0.5 * spacing, variation.shown.iter().copied());
+        variation.record_rest();
         Some(variation)
+    }
+
+    /// Records the derivatives of the outputs at rest up to the first point.
+    fn record_rest(&mut self) {
+        self.vary_given();
+        self.act_beside_contact();
+        self.act_by_contact();
+        self.show();
+        let until = self.time - 0.5 * self.spacing;
+        self.tape.record_rest(until, self.shown.iter().copied());
     }
 
     /// The derivatives of the outputs.

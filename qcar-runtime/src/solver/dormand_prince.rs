@@ -9,7 +9,7 @@
 use super::control::Control;
 use super::events::{Crossing, LOOK_AHEAD, Watch};
 use super::fastest::{ITERATIONS, fastest_rate};
-use super::{After, Effort, Reason, Report, Step, System, all_finite, legs, shortest_step};
+use super::{After, Effort, Reason, Report, Step, System, all_finite, over_legs, shortest_step};
 use crate::vectors::{Loops, widest};
 
 /// Tolerances and limits of the adaptive integrator.
@@ -94,13 +94,8 @@ impl DormandPrince {
     fn run<S: System>(&mut self, system: &mut S, span: (f64, f64), breaks: &[f64], x: &mut [f64]) -> Report {
         self.make_room(system.signals());
         self.x.copy_from_slice(x);
-        let (mut reason, mut time) = (Reason::End, span.0);
-        for leg in legs(span, breaks) {
-            (reason, time) = self.leg(system, leg, shortest_step(span.0, span.1));
-            if reason != Reason::End {
-                break;
-            }
-        }
+        let shortest = shortest_step(span.0, span.1);
+        let (reason, time) = over_legs(span, breaks, |leg| self.leg(system, leg, shortest));
         x.copy_from_slice(&self.x);
         Report {
             reason,
@@ -180,7 +175,7 @@ impl DormandPrince {
     /// Latest end of the next step, so that it contains no kink except one at its beginning.
     fn bend<S: System>(&self, system: &S, t: f64) -> f64 {
         let from = t + BEHIND * self.control.step;
-        system.next_bend(t, &self.x, &self.k[0][..self.x.len()], from)
+        system.next_kink(t, &self.x, &self.k[0][..self.x.len()], from)
     }
 
     /// The longest step that damps the fastest mode at the start; NaN without one.

@@ -1,7 +1,7 @@
 //! The classical Runge–Kutta method of fourth order with steps of equal length.
 
 use super::events::{LOOK_AHEAD, Watch};
-use super::{After, Effort, Reason, Report, Step, System, all_finite, legs};
+use super::{After, Effort, Reason, Report, Step, System, all_finite, over_legs};
 
 /// A fixed-step integrator with its workspace.
 pub struct Rk4 {
@@ -41,13 +41,7 @@ impl Rk4 {
         let signals = system.signals();
         self.k.iter_mut().for_each(|k| k.resize(x.len() + signals, 0.0));
         self.x.copy_from_slice(x);
-        let (mut reason, mut time) = (Reason::End, span.0);
-        for leg in legs(span, breaks) {
-            (reason, time) = self.leg(system, leg);
-            if reason != Reason::End {
-                break;
-            }
-        }
+        let (reason, time) = over_legs(span, breaks, |leg| self.leg(system, leg));
         x.copy_from_slice(&self.x);
         Report {
             reason,

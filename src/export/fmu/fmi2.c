@@ -43,6 +43,16 @@ static Status said(Instance *of, int result)
 #ifdef FMI2_FUNCTION_PREFIX
 #define FUNCTION_PREFIX FMI2_FUNCTION_PREFIX
 #endif
+/* How this version names the functions of saved states, and how it allocates memory for them. */
+#define GET_STATE fmi2GetFMUstate
+#define SET_STATE fmi2SetFMUstate
+#define FREE_STATE fmi2FreeFMUstate
+#define SERIALIZED_STATE_SIZE fmi2SerializedFMUstateSize
+#define SERIALIZE_STATE fmi2SerializeFMUstate
+#define DESERIALIZE_STATE fmi2DeSerializeFMUstate
+#define ALLOCATE(of, size) ((of)->callbacks.allocate(1, size))
+#define RELEASE(of, memory) ((of)->callbacks.release(memory))
+typedef char Byte;
 #include "interface.h"
 
 EXPORT const char *FMI(fmi2GetTypesPlatform)(void) { return "default"; }
@@ -130,61 +140,6 @@ NONE_OF(fmi2GetString, const char *)
 NONE_OF(fmi2SetInteger, const int)
 NONE_OF(fmi2SetBoolean, const int)
 NONE_OF(fmi2SetString, const char *const)
-
-EXPORT Status FMI(fmi2GetFMUstate)(void *c, void **state)
-{
-    Instance *of = c;
-    if (!*state)
-        *state = of->callbacks.allocate(1, sizeof(Snapshot));
-    if (!*state)
-        return STATUS_ERROR;
-    memcpy(*state, &of->core.now, sizeof(Snapshot));
-    return STATUS_OK;
-}
-
-EXPORT Status FMI(fmi2SetFMUstate)(void *c, void *state)
-{
-    core_restore(&((Instance *)c)->core, state);
-    return STATUS_OK;
-}
-
-EXPORT Status FMI(fmi2FreeFMUstate)(void *c, void **state)
-{
-    if (*state)
-        ((Instance *)c)->callbacks.release(*state);
-    *state = NULL;
-    return STATUS_OK;
-}
-
-EXPORT Status FMI(fmi2SerializedFMUstateSize)(void *c, void *state, size_t *size)
-{
-    (void)c;
-    (void)state;
-    *size = sizeof(Snapshot);
-    return STATUS_OK;
-}
-
-EXPORT Status FMI(fmi2SerializeFMUstate)(void *c, void *state, char bytes[], size_t size)
-{
-    (void)c;
-    if (size < sizeof(Snapshot))
-        return STATUS_ERROR;
-    memcpy(bytes, state, sizeof(Snapshot));
-    return STATUS_OK;
-}
-
-EXPORT Status FMI(fmi2DeSerializeFMUstate)(void *c, const char bytes[], size_t size, void **state)
-{
-    Instance *of = c;
-    if (size < sizeof(Snapshot))
-        return STATUS_ERROR;
-    if (!*state)
-        *state = of->callbacks.allocate(1, sizeof(Snapshot));
-    if (!*state)
-        return STATUS_ERROR;
-    memcpy(*state, bytes, sizeof(Snapshot));
-    return STATUS_OK;
-}
 
 EXPORT Status FMI(fmi2GetDirectionalDerivative)(void *c, const unsigned int unknown[], size_t unknowns,
                                          const unsigned int known[], size_t knowns, const double seed[],

@@ -31,6 +31,16 @@ static Status said(Instance *of, int result)
 #ifdef FMI3_FUNCTION_PREFIX
 #define FUNCTION_PREFIX FMI3_FUNCTION_PREFIX
 #endif
+/* How this version names the functions of saved states, and how it allocates memory for them. */
+#define GET_STATE fmi3GetFMUState
+#define SET_STATE fmi3SetFMUState
+#define FREE_STATE fmi3FreeFMUState
+#define SERIALIZED_STATE_SIZE fmi3SerializedFMUStateSize
+#define SERIALIZE_STATE fmi3SerializeFMUState
+#define DESERIALIZE_STATE fmi3DeserializeFMUState
+#define ALLOCATE(of, size) malloc(size)
+#define RELEASE(of, memory) free(memory)
+typedef uint8_t Byte;
 #include "interface.h"
 
 EXPORT const char *FMI(fmi3GetVersion)(void) { return "3.0"; }
@@ -251,60 +261,6 @@ EXPORT Status FMI(fmi3GetVariableDependencies)(void *c, uint32_t dependent, size
     (void)of_independents;
     (void)kinds;
     return none(c, count + 1);
-}
-
-EXPORT Status FMI(fmi3GetFMUState)(void *c, void **state)
-{
-    if (!*state)
-        *state = malloc(sizeof(Snapshot));
-    if (!*state)
-        return STATUS_ERROR;
-    memcpy(*state, &((Instance *)c)->core.now, sizeof(Snapshot));
-    return STATUS_OK;
-}
-
-EXPORT Status FMI(fmi3SetFMUState)(void *c, void *state)
-{
-    core_restore(&((Instance *)c)->core, state);
-    return STATUS_OK;
-}
-
-EXPORT Status FMI(fmi3FreeFMUState)(void *c, void **state)
-{
-    (void)c;
-    free(*state);
-    *state = NULL;
-    return STATUS_OK;
-}
-
-EXPORT Status FMI(fmi3SerializedFMUStateSize)(void *c, void *state, size_t *size)
-{
-    (void)c;
-    (void)state;
-    *size = sizeof(Snapshot);
-    return STATUS_OK;
-}
-
-EXPORT Status FMI(fmi3SerializeFMUState)(void *c, void *state, uint8_t bytes[], size_t size)
-{
-    (void)c;
-    if (size < sizeof(Snapshot))
-        return STATUS_ERROR;
-    memcpy(bytes, state, sizeof(Snapshot));
-    return STATUS_OK;
-}
-
-EXPORT Status FMI(fmi3DeserializeFMUState)(void *c, const uint8_t bytes[], size_t size, void **state)
-{
-    (void)c;
-    if (size < sizeof(Snapshot))
-        return STATUS_ERROR;
-    if (!*state)
-        *state = malloc(sizeof(Snapshot));
-    if (!*state)
-        return STATUS_ERROR;
-    memcpy(*state, bytes, sizeof(Snapshot));
-    return STATUS_OK;
 }
 
 EXPORT Status FMI(fmi3GetDirectionalDerivative)(void *c, const uint32_t unknown[], size_t unknowns,

@@ -37,10 +37,10 @@ function lead({ summary, discover }) {
   }
   const names = together(discover.effects.map(placed));
   const alike = rivalsAlike(discover).map((rival) => `${words(rival.effect)} at ${words(rival.at)}`);
-  const doubt = alike.length ? `, not distinguishable from ${alike.join(' or ')}` : '';
+  const rivals = alike.length ? `, not distinguishable from ${alike.join(' or ')}` : '';
   return muchLeft(discover).length
-    ? `Partly explained by ${names}${doubt}. Large residuals remain.`
-    : `Missing: ${names}${doubt}.`;
+    ? `Partly explained by ${names}${rivals}. Large residuals remain.`
+    : `Missing: ${names}${rivals}.`;
 }
 
 // Rivals of the effects of the answer that are not distinguishable from them.

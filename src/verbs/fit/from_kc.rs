@@ -8,7 +8,7 @@ use crate::table::number;
 use crate::verbs::kc::{self, Gradient};
 
 /// Relative change of another open parameter, to test whether the value from a curve depends on it.
-const DOUBT: f64 = 1.1;
+const TRIAL_FACTOR: f64 = 1.1;
 
 /// Sets the parameters that the fit left at their start values to the values for which the fitted model has the
 /// measured gradients, if these are within their ranges. Otherwise a notice says why not.
@@ -73,7 +73,7 @@ fn adopt(fitted: &mut Fitted, gradient: &Gradient) -> Result<(), String> {
 fn partners(fitted: &Fitted, gradient: &Gradient, value: f64) -> Vec<String> {
     let moves = |at: usize| {
         let (mut values, mut moved) = (fitted.values(), gradient.clone());
-        values.set(at, DOUBT * values.as_slice()[at]);
+        values.set(at, TRIAL_FACTOR * values.as_slice()[at]);
         kc::take_apart(&mut moved, &fitted.campaign, &fitted.model, &values);
         moved
             .parameter_value

@@ -24,7 +24,7 @@ pub(in crate::verbs) struct ChannelSummary {
     /// Sparkline of a few characters, from the lowest to the highest value.
     pub sparkline: String,
     /// Why its unit is probably wrong, as a sentence.
-    pub doubt: Option<String>,
+    pub unit_warning: Option<String>,
 }
 
 impl ChannelSummary {
@@ -44,7 +44,7 @@ impl ChannelSummary {
             mean,
             rms: summary.rms(),
             sparkline: sparkline(&summary),
-            doubt: suspicion(&signal.unit, mean.map(|mean| Statistics { mean, min, max })),
+            unit_warning: suspicion(&signal.unit, mean.map(|mean| Statistics { mean, min, max })),
         }
     }
 

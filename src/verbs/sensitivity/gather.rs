@@ -61,7 +61,7 @@ pub(crate) struct MetricResult {
     /// The same for each run and parameter.
     pub by_run: Ordered<Vec<f64>>,
     /// Its uncertainty, if that of any parameter is known.
-    pub doubt: Option<UncertainMetric>,
+    pub uncertainty: Option<UncertainMetric>,
     /// Sobol indices for each parameter.
     pub sobol: Option<Ordered<Index>>,
     /// Mean and standard deviation over the designs of the Sobol indices.
@@ -195,7 +195,7 @@ fn result(
             .clone()
             .map(|at| (run(at), local.elasticities[at][..shown.len()].to_vec()))
             .collect(),
-        doubt: uncertainty.map(|uncertainty| doubted(value, names, &uncertainty.of(&slopes))),
+        uncertainty: uncertainty.map(|uncertainty| uncertain_metric(value, names, &uncertainty.of(&slopes))),
         sobol: None,
         spread: None,
     }
@@ -224,7 +224,7 @@ fn parameters(
 }
 
 /// The uncertainty of a metric with a value, from its interval.
-pub(crate) fn doubted(value: f64, names: &[String], of: &Interval) -> UncertainMetric {
+pub(crate) fn uncertain_metric(value: f64, names: &[String], of: &Interval) -> UncertainMetric {
     /// Number of standard deviations that contain 95 % of a normal distribution.
     const NORMAL: f64 = 1.96;
     let (mean, reach) = (value + of.shift, NORMAL * of.deviation);

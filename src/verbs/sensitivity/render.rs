@@ -89,22 +89,22 @@ fn values(of: &Sensitivity) -> Table {
     let mut table = Table::new(["metric", "value", "unit", "± (95 %)", "most of that by"]);
     for metric in &of.metrics {
         let shown = |value: f64| number(units::value(value, metric.unit), 4);
-        let doubt = metric.doubt.as_ref();
+        let uncertainty = metric.uncertainty.as_ref();
         table.row(vec![
             metric.name.clone(),
             shown(metric.value),
             units::name(metric.unit).into(),
-            doubt.map_or("-".into(), |doubt| reach(metric.value, doubt, metric.unit)),
-            doubt.map_or("-".into(), |doubt| largest(&doubt.shares.0)),
+            uncertainty.map_or("-".into(), |uncertainty| reach(metric.value, uncertainty, metric.unit)),
+            uncertainty.map_or("-".into(), |uncertainty| largest(&uncertainty.shares.0)),
         ]);
     }
     table
 }
 
 /// The interval of a value, with the difference of its mean if that is visible.
-pub(crate) fn reach(value: f64, doubt: &UncertainMetric, unit: &str) -> String {
+pub(crate) fn reach(value: f64, uncertainty: &UncertainMetric, unit: &str) -> String {
     const SEEN: f64 = 0.02;
-    let [low, high] = doubt.interval;
+    let [low, high] = uncertainty.interval;
     let (shift, reach) = (0.5 * (low + high) - value, 0.5 * (high - low));
     let shown = |value: f64| number(units::value(value, unit), 2);
     match shift.abs() > SEEN * reach {
@@ -132,11 +132,11 @@ fn largest(shares: &[(String, f64)]) -> String {
 /// A row for each metric and parameter.
 pub(super) fn csv(of: &Sensitivity) -> String {
     let mut out = String::from(
-        "metric,metric_unit,metric_value,parameter,parameter_unit,parameter_value,elasticity,share_of_doubt,sobol_first,sobol_total\n",
+        "metric,metric_unit,metric_value,parameter,parameter_unit,parameter_value,elasticity,share_of_variance,sobol_first,sobol_total\n",
     );
     for metric in &of.metrics {
         for (k, parameter) in of.parameters.iter().enumerate() {
-            let share = metric.doubt.as_ref().map(|doubt| doubt.shares.0[k].1);
+            let share = metric.uncertainty.as_ref().map(|uncertainty| uncertainty.shares.0[k].1);
             let sobol = metric.sobol.as_ref().map(|sobol| sobol.0[k].1);
             let optional = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
             let _ = writeln!(

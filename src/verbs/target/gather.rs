@@ -12,7 +12,7 @@ use super::design_uncertainty::{self, DesignUncertainty};
 use super::plan::Plan;
 use crate::json::Ordered;
 use crate::progress::while_counting;
-use crate::verbs::sensitivity::gather::{UncertainMetric, doubted, rounded};
+use crate::verbs::sensitivity::gather::{UncertainMetric, rounded, uncertain_metric};
 use crate::verbs::sensitivity::subject::Subject;
 
 /// The result.
@@ -74,7 +74,7 @@ pub(super) struct Target {
     /// target in the conflict.
     pub multiplier: f64,
     /// Uncertainty of the design's value, if parameters are uncertain.
-    pub doubt: Option<UncertainMetric>,
+    pub uncertainty: Option<UncertainMetric>,
     /// Share of draws in which the design meets the target.
     pub holds: Option<f64>,
     /// Share of the designs in the solution space that meet it.
@@ -329,10 +329,10 @@ fn targets(
             met: is_met(found.excess[at]),
             excess: found.excess[at],
             multiplier: found.multipliers[at],
-            doubt: sure
+            uncertainty: sure
                 .as_ref()
                 .zip(plan.limits.get(at))
-                .map(|((_, intervals), limit)| doubted(values[1], &names, &intervals[limit.result])),
+                .map(|((_, intervals), limit)| uncertain_metric(values[1], &names, &intervals[limit.result])),
             holds: sure.as_ref().map(|(sureness, _)| sureness.each[at]),
             in_space: space.map(|space| space.each[at]),
         }

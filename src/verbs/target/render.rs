@@ -86,11 +86,11 @@ fn sureness(of: &DesignUncertainty) -> String {
 }
 
 fn targets(of: &Answer) -> Table {
-    let in_doubt = of.uncertainty.is_some();
-    let doubt: &[&str] = if in_doubt { &["± (95 %)", "holds %"] } else { &[] };
+    let is_uncertain = of.uncertainty.is_some();
+    let uncertainty: &[&str] = if is_uncertain { &["± (95 %)", "holds %"] } else { &[] };
     let headings = ["target", "run", "limit", "unit", "today", "design"]
         .iter()
-        .chain(doubt);
+        .chain(uncertainty);
     let headings = headings.chain(&["met", "multiplier", "in space %"]);
     let mut table = Table::with_headings(headings.map(|own| own.to_string()).collect());
     for own in &of.targets {
@@ -110,9 +110,9 @@ fn targets(of: &Answer) -> Table {
             shown(own.today),
             shown(own.design),
         ];
-        if in_doubt {
-            let doubt = own.doubt.as_ref();
-            row.push(doubt.map_or("-".into(), |doubt| reach(own.design, doubt, &own.unit)));
+        if is_uncertain {
+            let uncertainty = own.uncertainty.as_ref();
+            row.push(uncertainty.map_or("-".into(), |uncertainty| reach(own.design, uncertainty, &own.unit)));
             row.push(or_dash(own.holds.map(|share| 100.0 * share), 3));
         }
         row.extend([

@@ -66,7 +66,7 @@ fn targets(workbook: &mut Workbook, of: &Answer) -> Result<(), XlsxError> {
 
 /// An end of the interval of the design's value.
 fn end(of: &Target, side: usize) -> Cell {
-    let ends = of.doubt.as_ref().map(|doubt| doubt.interval[side]);
+    let ends = of.uncertainty.as_ref().map(|uncertainty| uncertainty.interval[side]);
     Cell::Number(ends.map(|value| units::value(value, &of.unit)))
 }
 

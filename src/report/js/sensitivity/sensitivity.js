@@ -2,7 +2,7 @@
 
 function sensitivity(data) {
   const head = () => heading('Sensitivities', data.subject.split('/').pop(), `Model ${data.model}`);
-  assemble(() => [head(), [summary(data), tornado(data), matrix(data), doubt(data), sobol(data)]]);
+  assemble(() => [head(), [summary(data), tornado(data), matrix(data), uncertaintySection(data), sobol(data)]]);
 }
 
 sensitivity(reported());

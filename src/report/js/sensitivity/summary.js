@@ -7,11 +7,11 @@ function summary(data) {
     const words = 'The model has no metric that could be measured on these runs.';
     return { element: section('summary', 'Metrics', h('p', { class: 'lead' }, words), notices) };
   }
-  const isDoubted = metrics.some((own) => own.doubt);
+  const isUncertain = metrics.some((own) => own.uncertainty);
   const columns = [
     ['metric', 'text'],
     ['value', 'number'],
-    ...(isDoubted ? [['95 % interval', 'text']] : []),
+    ...(isUncertain ? [['95 % interval', 'text']] : []),
     ...(parameters.length ? [['moved most by', 'text']] : []),
     ['meaning', 'sentence'],
   ];
@@ -22,7 +22,7 @@ function summary(data) {
   const rows = metrics.map((own) => [
     own.name,
     quantity(own.value, own.unit),
-    ...(isDoubted ? [own.doubt ? own.doubt.interval.map((end) => quantity(end, own.unit)).join(' … ') : '–'] : []),
+    ...(isUncertain ? [own.uncertainty ? own.uncertainty.interval.map((end) => quantity(end, own.unit)).join(' … ') : '–'] : []),
     ...(parameters.length ? [strongest(own) || 'none'] : []),
     h('span', { class: 'doc' }, own.doc.replace(/`/g, '')),
   ]);

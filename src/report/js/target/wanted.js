@@ -48,7 +48,7 @@ function wanted(data) {
         : '. A multiplier is the share of a target in the conflict.',
     ),
     table('Targets', columns, data.targets.map(row)),
-    data.uncertainty ? h('p', {}, doubts(data.uncertainty)) : null,
+    data.uncertainty ? h('p', {}, uncertaintyNote(data.uncertainty)) : null,
   );
   return { element };
 }
@@ -63,11 +63,11 @@ function judgedWord(own) {
 }
 
 function interval(own) {
-  return own.doubt ? own.doubt.interval.map((value) => quantity(value, own.unit)).join(' … ') : '–';
+  return own.uncertainty ? own.uncertainty.interval.map((value) => quantity(value, own.unit)).join(' … ') : '–';
 }
 
 // The uncertainty of the parameters, and how often the design meets the targets.
-function doubts({ all, draws, wanted, parameters }) {
+function uncertaintyNote({ all, draws, wanted, parameters }) {
   const by = Object.entries(parameters)
     .filter(([, names]) => names.length)
     .map(([source, names]) => `${source} (${names.join(', ')})`);

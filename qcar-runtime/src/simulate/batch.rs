@@ -1,11 +1,11 @@
 //! Linear axles on smooth ground, integrated together with one lane for each: the exponential method, the contact and
 //! the equations of motion run over the lanes.
 //!
-//! Each lane has the same bits as a [`Shortcut`] alone. The contact of a tyre on more than one straight piece of road
-//! is computed alone.
+//! Each lane has the same bits as an [`ExponentialStepper`] alone. The contact of a tyre on more than one straight piece
+//! of road is computed alone.
 
+use super::exponential::ExponentialStepper;
 use super::rolling::{Rolling, WheelStates};
-use super::shortcut::Shortcut;
 use crate::model::{Contact, Contacts, LANES, Lanes, Model};
 use crate::solver::ExponentialAbreast;
 use crate::tyre::{Pieces, Tyre, Wheels};
@@ -13,8 +13,8 @@ use crate::vectors::{Loops, over_lanes};
 
 const NOTHING: Lanes = [0.0; LANES];
 
-/// Rides that are integrated together.
-pub(super) struct Formation<'a, M: ?Sized> {
+/// A batch of rides, one in each lane.
+pub(super) struct Batch<'a, M: ?Sized> {
     model: &'a M,
     tyre: Tyre,
     method: ExponentialAbreast<2>,
@@ -44,16 +44,16 @@ pub(super) struct Formation<'a, M: ?Sized> {
     state: Vec<f64>,
 }
 
-impl<'a, M: Model + ?Sized> Formation<'a, M> {
-    /// An empty formation for rides of this model.
-    pub fn like(shortcut: &mut Shortcut, rolling: &Rolling<'a, M>) -> Self {
-        let (relative, absolute) = shortcut.tolerance();
+impl<'a, M: Model + ?Sized> Batch<'a, M> {
+    /// An empty batch for rides of this model.
+    pub fn like(stepper: &mut ExponentialStepper, rolling: &Rolling<'a, M>) -> Self {
+        let (relative, absolute) = stepper.tolerance();
         let absolute = absolute.to_vec();
         let (states, _) = rolling.sizes();
         Self {
             model: rolling.model,
             tyre: rolling.tyre,
-            method: ExponentialAbreast::like(shortcut.method(), &absolute),
+            method: ExponentialAbreast::like(stepper.method(), &absolute),
             relative,
             times: NOTHING,
             constants: vec![NOTHING; rolling.constants.len()],
@@ -74,13 +74,13 @@ impl<'a, M: Model + ?Sized> Formation<'a, M> {
     }
 
     /// True if a ride can join: its tyre, its fixed states and its method agree with the others.
-    pub fn fits(&self, shortcut: &mut Shortcut, rolling: &Rolling<'a, M>) -> bool {
-        self.tyre == rolling.tyre && self.locked == rolling.locked && self.method.fits(shortcut.method())
+    pub fn fits(&self, stepper: &mut ExponentialStepper, rolling: &Rolling<'a, M>) -> bool {
+        self.tyre == rolling.tyre && self.locked == rolling.locked && self.method.fits(stepper.method())
     }
 
-    /// Takes a ride whose shortcut has begun into a lane.
-    pub fn take(&mut self, lane: usize, shortcut: &mut Shortcut, rolling: &Rolling<'a, M>) {
-        self.method.take(lane, shortcut.method());
+    /// Loads a ride whose stepper has begun into a lane.
+    pub fn load(&mut self, lane: usize, stepper: &mut ExponentialStepper, rolling: &Rolling<'a, M>) {
+        self.method.take(lane, stepper.method());
         let constants = self.constants.iter_mut().zip(&rolling.constants);
         constants.for_each(|(row, constant)| row[lane] = *constant);
         self.speeds[lane] = rolling.speed;
@@ -89,24 +89,24 @@ impl<'a, M: Model + ?Sized> Formation<'a, M> {
         self.pieces.put(lane, rolling.road, rolling.piece.get());
     }
 
-    /// Frees a lane and returns its state.
-    pub fn give(&mut self, lane: usize, shortcut: &mut Shortcut, x: &mut [f64]) {
-        self.method.give(lane, shortcut.method());
-        x.copy_from_slice(shortcut.state());
+    /// Copies the state of a lane back to its ride.
+    pub fn unload(&mut self, lane: usize, stepper: &mut ExponentialStepper, x: &mut [f64]) {
+        self.method.give(lane, stepper.method());
+        x.copy_from_slice(stepper.state());
     }
 
     /// Doubles the step of a lane if that is possible and enough past forces are known.
     #[inline]
-    pub fn lengthen(&mut self, lane: usize, shortcut: &mut Shortcut, rolling: &Rolling<'_, M>) {
-        if shortcut.wants_longer(rolling) && self.method.may_lengthen(lane) {
-            self.method.give(lane, shortcut.method());
-            shortcut.lengthen();
-            self.method.take(lane, shortcut.method());
+    pub fn lengthen(&mut self, lane: usize, stepper: &mut ExponentialStepper, rolling: &Rolling<'_, M>) {
+        if stepper.wants_longer(rolling) && self.method.may_lengthen(lane) {
+            self.method.give(lane, stepper.method());
+            stepper.lengthen();
+            self.method.take(lane, stepper.method());
         }
     }
 
     /// Sets the end of the step of a lane, s.
-    pub fn aim(&mut self, lane: usize, time: f64) {
+    pub fn set_time(&mut self, lane: usize, time: f64) {
         self.times[lane] = time;
     }
 
@@ -127,8 +127,8 @@ impl<'a, M: Model + ?Sized> Formation<'a, M> {
 
     /// Computes the contact of a lane if it is not known yet. Returns whether its force is smooth.
     #[inline]
-    pub fn touch(&mut self, lane: usize, rolling: &Rolling<'_, M>, from: [f64; 2]) -> bool {
-        let smooth = !rolling.bends_between(from, self.centre(lane));
+    pub fn find_contact(&mut self, lane: usize, rolling: &Rolling<'_, M>, from: [f64; 2]) -> bool {
+        let smooth = !rolling.has_kink_between(from, self.centre(lane));
         if !smooth || self.found[lane] {
             return smooth;
         }
@@ -174,7 +174,7 @@ impl<'a, M: Model + ?Sized> Formation<'a, M> {
 }
 
 /// Prediction: states, wheels, and the contacts of wheels on a single straight piece of road.
-struct Predictor<'f, 'a, M: ?Sized>(&'f mut Formation<'a, M>);
+struct Predictor<'f, 'a, M: ?Sized>(&'f mut Batch<'a, M>);
 
 impl<M: Model + ?Sized> Loops for Predictor<'_, '_, M> {
     type Result = ();
@@ -203,7 +203,7 @@ impl<M: Model + ?Sized> Loops for Predictor<'_, '_, M> {
 
 /// A step under the computed contacts.
 struct Advance<'f, 'a, M: ?Sized> {
-    of: &'f mut Formation<'a, M>,
+    of: &'f mut Batch<'a, M>,
     smooth: [bool; LANES],
 }
 

@@ -11,7 +11,7 @@ use crate::model::{About, Contact, Model};
 use crate::solver::{Driven, Effort, ExponentialAdams, PAST};
 
 /// The exponential method, with the past forces that it needs to begin.
-pub(super) struct Shortcut {
+pub(super) struct ExponentialStepper {
     adams: ExponentialAdams<2>,
     relative: f64,
     absolute: Vec<f64>,
@@ -37,8 +37,8 @@ pub(super) struct Shortcut {
 /// polynomials between them: with steps of 2 ms this is accurate up to about 100 Hz, and wrong above 200 Hz.
 const STEP: f64 = 1e-3;
 
-impl Shortcut {
-    /// A shortcut for a ride that is recorded on a grid. `None` if the axle is not linear, or if the settings ask for
+impl ExponentialStepper {
+    /// The stepper of a ride that is recorded on a grid. `None` if the axle is not linear, or if the settings ask for
     /// steps of a given length. The method of another ride of the `same` car with the same step saves a matrix
     /// exponential.
     pub fn new<M: Model + ?Sized>(
@@ -94,7 +94,7 @@ impl Shortcut {
         if self.past.len() == PAST {
             self.past.remove(0);
         }
-        if force.is_none() || rolling.bends_between(self.centre, centre) {
+        if force.is_none() || rolling.has_kink_between(self.centre, centre) {
             self.past.clear();
         }
         self.past.extend(force);
@@ -185,7 +185,7 @@ impl Shortcut {
         self.adams.state()
     }
 
-    /// Ends the shortcut. Returns the time, s, and the effort.
+    /// Hands the ride back to the general method. Returns the time, s, and the effort.
     pub fn end(&mut self) -> (f64, Effort) {
         self.past.clear();
         let ended = self.times[self.next - 1];
@@ -229,7 +229,7 @@ impl<M: Model + ?Sized> Driven<2> for Smooth<'_, '_, M> {
     #[inline(always)]
     fn force(&mut self, t: f64, x: &[f64]) -> Option<[f64; 2]> {
         let before = std::mem::replace(&mut self.centre, self.rolling.centre(t, x));
-        if self.rolling.bends_between(before, self.centre) {
+        if self.rolling.has_kink_between(before, self.centre) {
             return None;
         }
         self.contact = self.rolling.contact_at(t, x)?;

@@ -1,4 +1,4 @@
-//! A run as the fitted model expects it: with another sensor, another excitation, once more, or beyond its band.
+//! A run as the fitted model predicts it: with another sensor, another excitation, once more, or beyond its band.
 //!
 //! An added sensor is assumed to have the noise of sensors of its kind in the same run, or else their relative noise.
 //! The model's misfit is assumed to be the same for all channels.
@@ -13,7 +13,7 @@ use crate::response::ratio::Ratios;
 use nalgebra::Complex;
 
 /// A run as the fitted model predicts it.
-pub(super) struct Run<'a, M: ?Sized> {
+pub(super) struct PredictedRun<'a, M: ?Sized> {
     model: &'a M,
     values: &'a Values,
     /// The level of the run, without its observations.
@@ -25,7 +25,7 @@ pub(super) struct Run<'a, M: ?Sized> {
     misfit: f64,
 }
 
-impl<'a, M: Model + ?Sized> Run<'a, M> {
+impl<'a, M: Model + ?Sized> PredictedRun<'a, M> {
     /// `None` for a run without a ratio to its excitation.
     pub fn new(model: &'a M, values: &'a Values, level: &Level) -> Option<Self> {
         let excitation = &model.about().excitations[level.excitation];
@@ -62,7 +62,7 @@ impl<'a, M: Model + ?Sized> Run<'a, M> {
         } else {
             SignalKind::Motion(Quantity::Acceleration)
         };
-        let run = Run {
+        let run = PredictedRun {
             level: Level {
                 name: own.name.to_string(),
                 excitation,

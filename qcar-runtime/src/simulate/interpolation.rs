@@ -1,4 +1,4 @@
-//! Ranges of a signal in which only one sample in each stride is known; polynomials give the others.
+//! Polynomial interpolation where only one sample in each stride is known.
 
 use std::array;
 use std::ops::Range;
@@ -7,7 +7,7 @@ use crate::solver::PAST;
 use crate::vectors::{Loops, widest};
 
 /// A range of samples of which one in each stride is known.
-pub(super) struct Gap {
+pub(super) struct SparseRange {
     pub from: usize,
     pub to: usize,
     pub stride: usize,
@@ -20,17 +20,17 @@ pub(super) struct Gap {
 const AROUND: usize = 8;
 const BEFORE: usize = AROUND / 2 - 1;
 
-impl Gap {
+impl SparseRange {
     /// Interpolates the missing points of signals that are stored phase by phase; the first phase has the samples.
     ///
-    /// The signals must be smooth in the gap and for as many strides before it as the integration method looked back.
+    /// The signals must be smooth in the range and for as many strides before it as the integration method looked back.
     /// Points further away are not used.
     pub fn fill(&self, signals: &mut [f64], (phases, length): (usize, usize)) {
         let before = (PAST - 1).min(self.from / self.stride);
         let count = before + (self.to - self.from) / self.stride + 1;
         let points = self.stride * phases;
-        let between: Vec<Between> = (1..points)
-            .map(|point| Between::new(point as f64 / points as f64, count))
+        let between: Vec<Interpolator> = (1..points)
+            .map(|point| Interpolator::new(point as f64 / points as f64, count))
             .collect();
         let mut filled = vec![0.0; count];
         for signal in signals.chunks_exact_mut(phases * length) {
@@ -53,7 +53,7 @@ impl Gap {
         }
     }
 
-    /// The ends of the gap in which the filter reaches outside of it; a short gap is one such end.
+    /// The ends of the range in which the filter reaches outside of it; a short range is one such end.
     fn ends(&self) -> [Range<usize>; 2] {
         let reach = (2 * self.reach).next_multiple_of(self.stride);
         if 2 * reach < self.to - self.from {
@@ -70,14 +70,14 @@ impl Gap {
 }
 
 /// A position between two known samples.
-struct Between {
+struct Interpolator {
     /// Number of known samples.
     count: usize,
     /// Interpolation weights by the number of known samples before the position, less one.
     weights: [[f64; AROUND]; AROUND],
 }
 
-impl Between {
+impl Interpolator {
     fn new(part: f64, count: usize) -> Self {
         let places = array::from_fn(|before| before as f64 + part);
         Self {
@@ -89,7 +89,7 @@ impl Between {
     /// The interpolated values after each known sample from `first` on; zero after the last.
     fn fill(&self, known: &[f64], first: usize, filled: &mut [f64]) {
         let (end, last_start) = (first + filled.len(), self.count.saturating_sub(AROUND));
-        // Near the ends of the gap there are fewer samples on one side.
+        // Near the ends of the range there are fewer samples on one side.
         let from = first.max(BEFORE).min(end);
         let to = (last_start + BEFORE + 1).clamp(from, end);
         for k in (first..from).chain(to..end) {
@@ -151,17 +151,17 @@ mod tests {
         let (length, phases) = (200, 2);
         let value = |i: usize| wave((i % length) as f64 + (i / length) as f64 / phases as f64);
         let full: Vec<f64> = (0..length * phases).map(value).collect();
-        let gap = Gap {
+        let range = SparseRange {
             from: 31,
             to: 199,
             stride: 2,
             reach: 13,
         };
-        let known = |i: usize| i % length <= gap.from || i < length && (i - gap.from).is_multiple_of(gap.stride);
+        let known = |i: usize| i % length <= range.from || i < length && (i - range.from).is_multiple_of(range.stride);
         let mut signal: Vec<f64> = (0..full.len())
             .map(|i| if known(i) { full[i] } else { f64::NAN })
             .collect();
-        gap.fill(&mut signal, (phases, length));
+        range.fill(&mut signal, (phases, length));
         let needed = |i: usize| i < length || !(57..173).contains(&(i % length));
         for i in (0..full.len()).filter(|&i| needed(i) && i != full.len() - 1) {
             let error = (signal[i] - full[i]).abs();
@@ -169,25 +169,25 @@ mod tests {
             let allowed = if i % length > 190 { 3e-3 } else { 1e-4 };
             assert!(error < allowed, "{i}: {error}");
         }
-        assert_eq!(gap.all_smooth(), 31..174);
+        assert_eq!(range.all_smooth(), 31..174);
     }
 
     #[test]
-    fn a_short_gap_of_long_strides_may_end_with_the_record() {
+    fn a_short_range_of_long_strides_may_end_with_the_record() {
         let (length, phases) = (41, 2);
         let value = |i: usize| 3.0 + (i % length) as f64 + (i / length) as f64 / phases as f64;
-        let gap = Gap {
+        let range = SparseRange {
             from: 32,
             to: 40,
             stride: 8,
             reach: 13,
         };
-        let known = |i: usize| i <= gap.from || i == gap.to;
+        let known = |i: usize| i <= range.from || i == range.to;
         let mut signal: Vec<f64> = (0..length * phases)
             .map(|i| if known(i) { value(i) } else { f64::NAN })
             .collect();
-        gap.fill(&mut signal, (phases, length));
-        for i in (0..length).chain(length + gap.from..length * phases - 1) {
+        range.fill(&mut signal, (phases, length));
+        for i in (0..length).chain(length + range.from..length * phases - 1) {
             assert!((signal[i] - value(i)).abs() < 1e-9, "{i}: {}", signal[i]);
         }
     }

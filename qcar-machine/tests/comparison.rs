@@ -1,17 +1,17 @@
-//! A model in both ways to run it.
+//! Comparison of machine code with the interpreter.
 
 use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::schedule::Compiled;
 use qcar_machine::Machine;
 use qcar_model::{About, Contact, Contacts, LANES, Lanes, Model, Points, ResponseMut};
 
-/// The same compiled model, interpreted and as machine code for vectors of both breadths.
-pub struct Both {
+/// A compiled model in the interpreter, and as machine code with vectors of four and of eight numbers.
+pub struct Comparison {
     interpreted: Evaluator,
     machines: [Machine; 2],
 }
 
-/// Where a model is evaluated: numbers for whatever it reads, again from the first where there are too few.
+/// Arguments of a model: numbers that are repeated if there are too few.
 pub struct At<'a>(pub &'a [f64]);
 
 impl At<'_> {
@@ -25,11 +25,11 @@ impl At<'_> {
     }
 }
 
-impl Both {
+impl Comparison {
     pub fn new(compiled: &Compiled) -> Self {
-        Both {
+        Comparison {
             interpreted: Evaluator::new(compiled),
-            machines: [Machine::new(compiled), Machine::narrow(compiled)],
+            machines: [Machine::new(compiled), Machine::with_avx(compiled)],
         }
     }
 
@@ -37,7 +37,7 @@ impl Both {
         self.interpreted.about()
     }
 
-    /// All that a model offers, at random places.
+    /// Compares every function of the trait for random arguments.
     pub fn compare(&self, at: &At) {
         let about = self.about();
         let p = at.positive(0, about.parameters.len());
@@ -113,7 +113,7 @@ impl Both {
         self.compare_responses_of_sets(constants, &at.positive(19, 3));
     }
 
-    /// The interpreter's are those of each set alone, too.
+    /// Compares responses of sets also with the interpreter's response of each set alone.
     fn compare_responses_of_sets(&self, constants: &[Lanes], omega: &[f64]) {
         for (excitation, layout) in self.about().responses.iter().enumerate() {
             for wanted in [false, true] {
@@ -181,7 +181,7 @@ impl Both {
         flat.as_chunks().0.to_vec()
     }
 
-    /// What all give, which is the same bit by bit; no two ways of computing need agree on which not-a-number is none.
+    /// The values of the interpreter, after a check that machine code gives the same bits, or NaN where that does.
     pub fn same(&self, length: usize, evaluate: impl Fn(&dyn Model, &mut [f64])) -> Vec<f64> {
         let mut expected = vec![0.5; length];
         evaluate(&self.interpreted, &mut expected);

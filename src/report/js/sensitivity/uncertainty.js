@@ -1,27 +1,27 @@
 // The uncertainty of each metric, and the parameters that cause it.
 
-const DOUBT_BARS = 8;
+const UNCERTAINTY_BARS = 8;
 
-function doubt({ metrics }) {
-  const doubted = metrics.filter((own) => own.doubt && own.doubt.deviation > 0);
-  if (!doubted.length) return null;
+function uncertaintySection({ metrics }) {
+  const uncertain = metrics.filter((own) => own.uncertainty && own.uncertainty.deviation > 0);
+  if (!uncertain.length) return null;
   const columns = [
     ['metric', 'text'],
     ['value', 'number'],
     ['standard deviation', 'number'],
     ['95 % interval', 'text'],
-    ...Object.keys(doubted[0].doubt.sources).map((source) => [`by ${words(source)}`, 'number']),
+    ...Object.keys(uncertain[0].uncertainty.sources).map((source) => [`by ${words(source)}`, 'number']),
   ];
-  const rows = doubted.map((own) => [
+  const rows = uncertain.map((own) => [
     own.name,
     quantity(own.value, own.unit),
-    quantity(own.doubt.deviation, own.unit, 2),
-    own.doubt.interval.map((end) => quantity(end, own.unit)).join(' … '),
-    ...Object.values(own.doubt.sources).map(share),
+    quantity(own.uncertainty.deviation, own.unit, 2),
+    own.uncertainty.interval.map((end) => quantity(end, own.unit)).join(' … '),
+    ...Object.values(own.uncertainty.sources).map(share),
   ]);
   const one = (own) => {
     const bar = ([name, part]) => ({ name, value: 100 * part, said: share(part), role: part < 0 ? 'before' : 'after' });
-    const rows = largest(Object.entries(own.doubt.shares), DOUBT_BARS).map(bar);
+    const rows = largest(Object.entries(own.uncertainty.shares), UNCERTAINTY_BARS).map(bar);
     return bars('shares', own.name, rows, '% of the variance');
   };
   return drawAll(
@@ -34,7 +34,7 @@ function doubt({ metrics }) {
         'Errors of the fit, tolerances and the temperature, to first order. A negative share is that of an error that compensates another with which it is correlated.',
       ),
       table('Uncertainty of the metrics', columns, rows),
-      h('div', { class: 'columns two' }, doubted.map(one)),
+      h('div', { class: 'columns two' }, uncertain.map(one)),
     ),
   );
 }
