@@ -261,6 +261,27 @@ fn score_compare_and_study_fit_free_decays() {
     }
 }
 
+/// The model outputs the position of the mass and not its acceleration, so a record has no further sensor. A run once
+/// more at most doubles the information.
+#[test]
+fn a_plan_proposes_to_repeat_free_decays() {
+    let folder = tempfile::tempdir().unwrap();
+    decaying_campaign(folder.path());
+    let words = ["plan", folder.path().to_str().unwrap(), "--format", "json"];
+    let plan: Value = serde_json::from_str(&succeeds(&words)).unwrap();
+    let further = plan["further"].as_array().unwrap();
+    for run in ["run_0.csv once more", "run_1.csv once more"] {
+        let repeated = further.iter().find(|own| own["what"] == run);
+        let repeated = repeated.unwrap_or_else(|| panic!("no {run}: {plan}"));
+        for name in ["c_body", "k_body"] {
+            let now = plan["parameters"][name]["stderr"].as_f64().unwrap();
+            let then = repeated["stderr"][name].as_f64().unwrap();
+            assert!(then < now && then > 0.7 * now, "{run}, {name}: {now}, then {then}");
+        }
+    }
+    assert!(further.iter().all(|own| own["kind"] != "sensor"), "{plan}");
+}
+
 /// No sensor shows how fast it is at first.
 #[test]
 fn a_record_that_starts_in_motion_needs_no_input() {

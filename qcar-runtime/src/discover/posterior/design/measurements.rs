@@ -7,7 +7,7 @@ use crate::discover::observe::{Evidence, Kind, PredictError, Run, Series, Stimul
 use crate::discover::posterior::Refit;
 use crate::fit::design::Kind as Added;
 use crate::mean::rms;
-use crate::model::{Link, Model, Output, SignalKind};
+use crate::model::{Link, Model, Output, Quantity as Derivative, Signal, SignalKind};
 use crate::transmissibility::Point;
 
 /// Evidence with one measurement added.
@@ -50,7 +50,7 @@ pub fn measurements(refit: &Refit, model: &dyn Model, fitted: &Evidence) -> Resu
         }
     }
     for output in model.about().outputs.iter() {
-        let added = with_sensor(fitted, output).map(|(what, evidence)| (Added::Sensor, what, evidence));
+        let added = with_sensor(model, fitted, output).map(|(what, evidence)| (Added::Sensor, what, evidence));
         found.extend(added.filter(|(_, what, _)| found.iter().all(|(_, other, _)| other != what)));
     }
     for (place, link) in model.about().links.iter().enumerate() {
@@ -118,16 +118,29 @@ fn shorter(fitted: &Evidence, run: usize) -> Evidence {
     more
 }
 
+/// The quantity that a sensor at an output measures, with its name: of a motion the acceleration, if the model outputs
+/// it. A record cannot be predicted by differentiating another output.
+fn sensed(model: &dyn Model, signal: &Signal) -> (Quantity, &'static str) {
+    let acceleration = SignalKind::Motion(Derivative::Acceleration);
+    let has_acceleration = || {
+        let mut outputs = model.about().outputs.iter().map(|output| &output.signal);
+        outputs.any(|own| own.kind == acceleration && (&own.location, &own.axis) == (&signal.location, &signal.axis))
+    };
+    match signal.kind {
+        SignalKind::Force => (Quantity::Force, "force"),
+        SignalKind::Stretch => (Quantity::Displacement, "stretch"),
+        SignalKind::Motion(Derivative::Position) if !has_acceleration() => (Quantity::Displacement, "displacement"),
+        SignalKind::Motion(Derivative::Velocity) if !has_acceleration() => (Quantity::Velocity, "velocity"),
+        SignalKind::Motion(_) => (Quantity::Acceleration, "acceleration"),
+    }
+}
+
 /// Adds a sensor at an output to every sweep and record that has a sensor along the same axis but not this one. Its
 /// noise is that of a sensor of the same quantity in the run, or else of any sensor there. `None` if no run gets the
 /// sensor.
-fn with_sensor(fitted: &Evidence, output: &Output) -> Option<(String, Evidence)> {
+fn with_sensor(model: &dyn Model, fitted: &Evidence, output: &Output) -> Option<(String, Evidence)> {
     let signal = &output.signal;
-    let (quantity, word) = match signal.kind {
-        SignalKind::Motion(_) => (Quantity::Acceleration, "acceleration"),
-        SignalKind::Force => (Quantity::Force, "force"),
-        SignalKind::Stretch => (Quantity::Displacement, "stretch"),
-    };
+    let (quantity, word) = sensed(model, signal);
     let axis = [Axis::Z, Axis::X].into_iter().find(|axis| axis.name() == signal.axis)?;
     let sensor = Point::new(&signal.location, axis, quantity);
     let mut more = fitted.clone();
