@@ -613,10 +613,10 @@ fn a_mass_is_found_from_the_start_values_where_the_base_fit_is_far_off() {
 }
 
 /// Every sensor's gain changes by 4 % over the band, with the phase that belongs to it. With curves held to the 1 % of
-/// data sheets, a relaxing bushing was named with certainty.
+/// data sheets, a sub-frame and a hydraulic mount are named with certainty.
 #[test]
 fn inaccurate_sensors_are_no_effect_and_a_notice_says_so() {
-    let answer = of_matrix(85, "hardware a3 Calibration alone seed 85");
+    let answer = answer_to(with_three_sweeps(of_case(85, "hardware a3 Calibration alone seed 85")));
     assert_eq!(answer["verdict"], "none", "{answer}");
     let notices = answer["notices"].to_string();
     assert!(
@@ -626,8 +626,10 @@ fn inaccurate_sensors_are_no_effect_and_a_notice_says_so() {
 }
 
 /// Calibration curves of another form than the model's leave no more than noise, but a compliant damper end beside them
-/// gains 8.5 in log evidence. Resampled data do not bear that out.
+/// gains 8.5 in log evidence. Resampled data do not bear that out. With three short sweeps, no effect gains more than
+/// 2.5, so it takes the whole campaign.
 #[test]
+#[ignore = "it searches a whole campaign; .ci/run runs it"]
 fn no_effect_is_named_for_calibration_curves_of_another_form() {
     let answer = of_matrix(101, "hardware d3 Calibration alone seed 101");
     assert_eq!(answer["effects"], Value::Array(Vec::new()), "{answer}");
@@ -685,8 +687,10 @@ fn with_three_sweeps(order: Order) -> Order {
 }
 
 /// The whole campaign too: a law at the same place that explains little more replaces neither of them. The bushing,
-/// which is what is hidden, comes first.
+/// which is what is hidden, comes first. The test with three sweeps is
+/// `a_law_takes_the_place_of_names_only_if_resampled_data_prefer_it`.
 #[test]
+#[ignore = "it searches a whole campaign; .ci/run runs it"]
 fn names_stand_where_a_law_at_their_place_explains_little_more() {
     let answer = answer_to(bushing_on_hardware());
     are_at_the_mount(&answer, "class", &["bushing_relaxation", "hydraulic_mount"]);
@@ -751,34 +755,32 @@ fn a_law_is_learned_between_a_mass_and_the_ground() {
 /// which each two of them meet in every combination, it stays the same.
 #[test]
 fn no_answer_hangs_on_a_number() {
-    let hidden = [
-        vec![],
-        vec![Hidden::new(
-            "coulomb_friction",
-            "damper",
-            &[("f_coulomb", 60.0), ("k_presliding", 600e3)],
-        )],
-        vec![Hidden::new(
-            "bushing_relaxation",
-            "top_mount",
-            &[("k_maxwell", 250e3), ("relaxation_frequency", 10.0)],
-        )],
-    ];
-    for (number, effects) in hidden.into_iter().enumerate() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let campaign = folder.path().join("campaign");
-        let order = Order {
-            cleats: false,
-            programme: two_short_sweeps(),
-            effects,
-            ..Order::clean("c", 2000 + number as u64)
-        };
-        make(order, &campaign).expect("a campaign");
-        let usual = names(&discover(&campaign, None));
-        for assumed in screening() {
-            let other = names(&discover_with(&campaign, &["--assume", &assumed]));
-            assert_eq!(other, usual, "campaign {number} with {assumed}");
-        }
+    let mount = [("k_maxwell", 250e3), ("relaxation_frequency", 10.0)];
+    hangs_on_no_number(2002, vec![Hidden::new("bushing_relaxation", "top_mount", &mount)]);
+}
+
+#[test]
+#[ignore = "18 searches like those of the test above; .ci/run runs it"]
+fn no_answer_to_other_campaigns_hangs_on_a_number() {
+    let friction = [("f_coulomb", 60.0), ("k_presliding", 600e3)];
+    hangs_on_no_number(2000, vec![]);
+    hangs_on_no_number(2001, vec![Hidden::new("coulomb_friction", "damper", &friction)]);
+}
+
+fn hangs_on_no_number(seed: u64, effects: Vec<Hidden>) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let campaign = folder.path().join("campaign");
+    let order = Order {
+        cleats: false,
+        programme: two_short_sweeps(),
+        effects,
+        ..Order::clean("c", seed)
+    };
+    make(order, &campaign).expect("a campaign");
+    let usual = names(&discover(&campaign, None));
+    for assumed in screening() {
+        let other = names(&discover_with(&campaign, &["--assume", &assumed]));
+        assert_eq!(other, usual, "the campaign of seed {seed} with {assumed}");
     }
 }
 
