@@ -140,3 +140,29 @@ fn plain(path: &Path) -> PathBuf {
     }
     plain
 }
+
+/// CHANGELOG.md, the crates, the Python package and the lock files of the other workspaces.
+#[test]
+fn the_newest_release_has_the_version_of_the_crates() {
+    let version = env!("CARGO_PKG_VERSION");
+    let read = |file: &str| fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(file)).unwrap();
+    let changes = read("CHANGELOG.md");
+    let mut releases = changes.lines().filter_map(|line| line.strip_prefix("## "));
+    assert_eq!(releases.next(), Some("Unreleased"));
+    let newest = releases.next().unwrap();
+    assert!(
+        newest.starts_with(&format!("{version} - ")),
+        "{newest} is the newest release"
+    );
+    let (published, own) = packages();
+    for package in published.iter().chain(&own) {
+        assert_eq!(text(package, "version"), version, "{}", text(package, "name"));
+    }
+    let python: toml::Table = toml::from_str(&read("qcar-python/Cargo.toml")).unwrap();
+    assert_eq!(python["package"]["version"].as_str(), Some(version));
+    for lock in ["qcar-python/Cargo.lock", "fuzz/Cargo.lock"] {
+        let locked = read(lock).replace("\r\n", "\n");
+        let entry = format!("name = \"qcar-runtime\"\nversion = \"{version}\"\n");
+        assert!(locked.contains(&entry), "{lock} has another version of qcar-runtime");
+    }
+}
