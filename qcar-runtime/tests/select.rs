@@ -230,19 +230,6 @@ fn an_effect_whose_magnitude_stands_at_its_end_is_no_answer() {
     assert_eq!(found.findings[0].effect, "heavy");
 }
 
-/// The right mass with a mount that is too soft leaves more than noise, with its stiffness at the end of the range.
-#[test]
-fn an_effect_whose_shape_is_at_its_end_and_that_leaves_more_than_noise_is_no_answer() {
-    let soft = Hanging {
-        stiffness: (20e3, 240e3),
-        ..Hanging::new("soft", (20.0, 200.0))
-    };
-    let unknown = answer(vec![soft], false, &evidence(0.0, &LEVELS));
-    assert_eq!(unknown.verdict, Verdict::Unknown);
-    let candidate = &unknown.candidates[0];
-    assert!(candidate.effect == "soft" && candidate.explained > 0.5, "{candidate:?}");
-}
-
 /// With a sensor that is 3 ms late, the mass of 70 kg looks lighter than 69.4 kg until the delay is in the model.
 #[test]
 fn what_a_nuisance_had_hidden_is_found_once_it_is_fitted() {

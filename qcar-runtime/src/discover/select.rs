@@ -40,7 +40,7 @@ use rayon::prelude::*;
 
 use assembly::{Assembly, Hypothesis, Place, Placed};
 use detection_limit::detection_limits;
-use exchange::exchanges;
+use exchange::{exchanges, other_forms};
 use extend::extensions;
 use fidelity::Fidelity;
 use first_law::FirstLaw;
@@ -123,6 +123,12 @@ fn search(base: Set, evidence: &Evidence, progress: Progress<'_>) -> (Discovery,
         let lead = law.lead(&sets, place, evidence, progress);
         let more = extensions(&sets[place], lead, evidence, progress);
         sets.extend(more);
+        while let Some(place) = unreformed(&sets, evidence) {
+            sets[place].reformed = true;
+            progress(Update::Step("trying the other forms of each effect"));
+            let others = other_forms(&sets[place], &sets, evidence);
+            sets.extend(others);
+        }
         report(&sets[best(&sets)], progress);
     }
     // Remove effects that the evidence no longer supports beside those found later.
@@ -223,7 +229,8 @@ const BEAM: usize = 2;
 
 /// The set to extend next; `None` if no extension is worth trying. This is the most probable set; then the base model
 /// with the nuisance effects that the data show, if the most probable set leaves a significant part; if something is
-/// still missing after that, it is the next one-effect set of the beam. A third effect is tried only if the first two
+/// still missing after that, or if more than noise is left and the next one-effect set of the beam explains nearly as
+/// much, it is that one. A third effect is tried only if the first two
 /// explain most of the excess residual; if they do not, the catalogue has no answer.
 fn next(sets: &[Set], evidence: &Evidence) -> Option<usize> {
     let best = best(sets);
@@ -236,9 +243,14 @@ fn next(sets: &[Set], evidence: &Evidence) -> Option<usize> {
         .filter(|_| !needs_no_further_effect(sets, best, evidence));
     let base =
         || Some(best_base(sets)).filter(|&base| !sets[base].extended && explained() < evidence.numbers.certain());
+    let may_be_part = |second: usize| {
+        let explained = || explained_share(&sets[best_base(sets)], &sets[second], evidence);
+        let leaves_more = leaves_more_than_noise(&sets[best], evidence);
+        is_missing(&sets[best], evidence) || leaves_more && explained() >= evidence.numbers.explained()
+    };
     first
         .or_else(base)
-        .or_else(|| second(sets).filter(|_| is_missing(&sets[best], evidence)))
+        .or_else(|| second(sets).filter(|&second| may_be_part(second)))
 }
 
 /// The next one-effect set to extend; `None` if the beam is full or no such set is left.
@@ -246,6 +258,15 @@ fn second(sets: &[Set]) -> Option<usize> {
     let single = |place: &usize| sets[*place].names().len() == 1;
     let (extended, open): (Vec<usize>, Vec<usize>) = (0..sets.len()).filter(single).partition(|&k| sets[k].extended);
     most_probable(sets, open).filter(|_| extended.len() < BEAM)
+}
+
+/// The most probable set, if it has several effects, leaves more than noise, and the other forms of its effects have not
+/// been tried yet.
+fn unreformed(sets: &[Set], evidence: &Evidence) -> Option<usize> {
+    let best = best(sets);
+    let set = &sets[best];
+    let is_open = !set.reformed && set.assembly.effects().len() > 1 && leaves_more_than_noise(set, evidence);
+    is_open.then_some(best)
 }
 
 /// The most probable set, or the part of it that the held-out runs support, if it has several effects and its rivals

@@ -205,6 +205,15 @@ impl Assembly {
         Some(assembly)
     }
 
+    /// All forms of an effect at its place.
+    pub fn forms(&self, own: &Placed) -> Vec<Option<String>> {
+        let candidates = self.workshop.candidates_of(&own.effect).into_iter();
+        candidates
+            .filter(|other| other.at == own.at)
+            .map(|other| other.form)
+            .collect()
+    }
+
     /// The assembly with these effects added; `None` if one of them does not apply.
     pub fn with_all(&self, effects: &[&Placed]) -> Option<Self> {
         let mut assembly = self.clone();

@@ -1,4 +1,4 @@
-//! Replaces one effect of a set by a rival.
+//! Replaces one effect of a set by a rival, or by another of its forms.
 //!
 //! An effect is preferred to its rivals before later effects are added. The effects still missing at that time bias the
 //! choice: unmodelled bending of the body or a sensor delay can favour the wrong effect. So each rival is fitted again
@@ -6,7 +6,7 @@
 
 use rayon::prelude::*;
 
-use super::assembly::Placed;
+use super::assembly::{Assembly, Place, Placed};
 use super::fidelity::Fidelity;
 use super::finite_explanation;
 use super::set::Set;
@@ -30,6 +30,34 @@ pub fn exchanges(set: &Set, sets: &[Set], evidence: &Evidence) -> Vec<Set> {
     let open: Vec<(&Set, &Set)> = open.collect();
     let exchanged = |(chosen, rival)| exchanged(set, chosen, rival, sets, evidence);
     open.into_par_iter().filter_map(exchanged).collect()
+}
+
+/// Fitted sets in which one named effect has another form. The best form alone need not be the best beside others.
+/// The first of `sets` is the base model.
+pub fn other_forms(set: &Set, sets: &[Set], evidence: &Evidence) -> Vec<Set> {
+    let base = &sets[0].assembly;
+    let effects = set.assembly.effects();
+    let changed = effects.iter().enumerate().filter(|(_, own)| !own.nuisance);
+    let changed: Vec<Vec<Placed>> = changed
+        .flat_map(|(place, own)| {
+            let forms = base.forms(own).into_iter();
+            forms.filter(|form| *form != own.form).map(move |form| {
+                let mut others = effects.to_vec();
+                others[place].form = form;
+                others
+            })
+        })
+        .collect();
+    let fitted = changed.par_iter().filter_map(|effects| {
+        let effects: Vec<&Placed> = effects.iter().collect();
+        if sets.iter().any(|known| has_all(known, &effects)) {
+            return None;
+        }
+        let assembly = base.with_all(&effects)?;
+        let from = set.assembly.hypothesis().place(&set.explanation.refit);
+        refitted(assembly, &from, set, set.log_prior, evidence)
+    });
+    fitted.collect()
 }
 
 /// True if the other set consists of the first `count` effects of this set.
@@ -60,18 +88,24 @@ fn exchanged(set: &Set, chosen: &Set, rival: &Set, sets: &[Set], evidence: &Evid
         return None;
     }
     let assembly = rival.assembly.with_all(&later.iter().collect::<Vec<_>>())?;
-    let hypothesis = assembly.hypothesis();
     let there = set.assembly.hypothesis().place(&set.explanation.refit);
     let mut from = rival.assembly.hypothesis().place(&rival.explanation.refit);
     for (name, value) in there.named {
         from.named.entry(name).or_insert(value);
     }
     from.discrepancy = there.discrepancy;
-    let steady = evidence.minus(&rival.explanation.refit.unsteady).with_step_limit();
-    let refit = hypothesis.fit(&from, &Fidelity::of(&steady).fine, (2, 15)).ok()?;
-    let explanation = finite_explanation(&hypothesis, refit, evidence)?;
     let prior = rival.log_prior + set.log_prior - chosen.log_prior;
-    Some(Set::new(assembly, explanation, prior))
+    refitted(assembly, &from, rival, prior, evidence)
+}
+
+/// A set with these effects, fitted from a place and with the non-steady part of a similar set; `None` if it cannot be
+/// fitted.
+fn refitted(assembly: Assembly, from: &Place, similar: &Set, log_prior: f64, evidence: &Evidence) -> Option<Set> {
+    let hypothesis = assembly.hypothesis();
+    let steady = evidence.minus(&similar.explanation.refit.unsteady).with_step_limit();
+    let refit = hypothesis.fit(from, &Fidelity::of(&steady).fine, (2, 15)).ok()?;
+    let explanation = finite_explanation(&hypothesis, refit, evidence)?;
+    Some(Set::new(assembly, explanation, log_prior))
 }
 
 fn has_all(known: &Set, effects: &[&Placed]) -> bool {

@@ -25,6 +25,8 @@ pub struct Set {
     pub log_prior: f64,
     /// True once extensions of the set have been tried.
     pub extended: bool,
+    /// True once its effects have been replaced by their other forms.
+    pub reformed: bool,
     /// True once its effects have been replaced by their rivals.
     pub exchanged: bool,
     /// True once it has been fitted without each of its effects.
@@ -43,6 +45,7 @@ impl Set {
             explanation,
             log_prior,
             extended: false,
+            reformed: false,
             exchanged: false,
             reduced: false,
             rivals: Vec::new(),
@@ -143,17 +146,30 @@ impl Set {
     }
 
     /// True if an effect that `part` lacks has a magnitude at its bound: it then imitates another effect. At the bound of
-    /// a shape parameter an effect can imitate almost any other, so these must be inside their ranges too if `part` has
-    /// effects, since little residual is left for further ones, and if this set leaves more than noise, since the model
-    /// is then wrong in another way.
+    /// a shape parameter an effect can imitate almost any other. So these must be inside their ranges too if `part` has
+    /// effects, since little residual is left for further ones; and if the effect has taken the place of a parameter of
+    /// the model, which it sends to its bound, and still leaves more than noise.
     pub fn adds_effect_at_bound(&self, part: &Set, evidence: &Evidence) -> bool {
-        let has_other_causes = !part.names().is_empty() || leaves_more_than_noise(self, evidence);
+        let replaces_parameter = || leaves_more_than_noise(self, evidence) && self.sends_parameter_to_bound(part);
+        let has_other_causes = !part.names().is_empty() || replaces_parameter();
         let is_at_bound = |own: &Placed| {
             own.unknowns.has_magnitude_at_bound(&self.explanation)
                 || has_other_causes && own.unknowns.has_parameter_at_bound(&self.explanation)
         };
         let is_new = |own: &&Placed| !part.names().contains(&own.name());
         self.named().filter(is_new).any(is_at_bound)
+    }
+
+    /// True if a parameter of the model is at its bound here and inside its range in the fit of `part`.
+    fn sends_parameter_to_bound(&self, part: &Set) -> bool {
+        let at_bound = |set: &'_ Set, bounded: bool| -> Vec<String> {
+            let (named, refit) = (&set.explanation.named, &set.explanation.refit);
+            let free = refit.free.iter().zip(&refit.at_bound);
+            let chosen = free.filter(|(_, side)| (**side != 0) == bounded);
+            chosen.map(|(free, _)| named[free.parameter].0.clone()).collect()
+        };
+        let inside = at_bound(part, false);
+        at_bound(self, true).iter().any(|name| inside.contains(name))
     }
 
     /// True if a parameter is at its bound and the other set has fewer free parameters. A law with a parameter at its
@@ -179,6 +195,13 @@ impl Set {
     /// The named effects: those that are not nuisance effects.
     pub fn named(&self) -> impl Iterator<Item = &Placed> + Clone {
         self.assembly.effects().iter().filter(|own| !own.nuisance)
+    }
+
+    /// Sorted places of these effects.
+    pub fn places(&self) -> Vec<&str> {
+        let mut places: Vec<&str> = self.named().map(|own| own.at.as_str()).collect();
+        places.sort_unstable();
+        places
     }
 
     /// Sorted pairs of name and place of these effects.
