@@ -123,8 +123,8 @@ fn search(base: Set, evidence: &Evidence, progress: Progress<'_>) -> (Discovery,
         let lead = law.lead(&sets, place, evidence, progress);
         let more = extensions(&sets[place], lead, evidence, progress);
         sets.extend(more);
-        while let Some(place) = unreformed(&sets, evidence) {
-            sets[place].reformed = true;
+        while let Some(place) = with_untried_forms(&sets, evidence) {
+            sets[place].forms_tried = true;
             progress(Update::Step("trying the other forms of each effect"));
             let others = other_forms(&sets[place], &sets, evidence);
             sets.extend(others);
@@ -228,10 +228,10 @@ impl Discovery {
 const BEAM: usize = 2;
 
 /// The set to extend next; `None` if no extension is worth trying. This is the most probable set; then the base model
-/// with the nuisance effects that the data show, if the most probable set leaves a significant part; if something is
-/// still missing after that, or if more than noise is left and the next one-effect set of the beam explains nearly as
-/// much, it is that one. A third effect is tried only if the first two
-/// explain most of the excess residual; if they do not, the catalogue has no answer.
+/// with the nuisance effects that the data show, if the most probable set leaves a significant part; then the next
+/// one-effect set of the beam, if something is still missing, or if more than noise is left and that set explains most
+/// of the excess residual too. A third effect is tried only if the first two explain most of the excess residual; if
+/// they do not, the catalogue has no answer.
 fn next(sets: &[Set], evidence: &Evidence) -> Option<usize> {
     let best = best(sets);
     let explained = || explained_share(&sets[best_base(sets)], &sets[best], evidence);
@@ -243,14 +243,14 @@ fn next(sets: &[Set], evidence: &Evidence) -> Option<usize> {
         .filter(|_| !needs_no_further_effect(sets, best, evidence));
     let base =
         || Some(best_base(sets)).filter(|&base| !sets[base].extended && explained() < evidence.numbers.certain());
-    let may_be_part = |second: usize| {
+    let is_worth_it = |second: usize| {
         let explained = || explained_share(&sets[best_base(sets)], &sets[second], evidence);
         let leaves_more = leaves_more_than_noise(&sets[best], evidence);
         is_missing(&sets[best], evidence) || leaves_more && explained() >= evidence.numbers.explained()
     };
     first
         .or_else(base)
-        .or_else(|| second(sets).filter(|&second| may_be_part(second)))
+        .or_else(|| second(sets).filter(|&second| is_worth_it(second)))
 }
 
 /// The next one-effect set to extend; `None` if the beam is full or no such set is left.
@@ -262,10 +262,10 @@ fn second(sets: &[Set]) -> Option<usize> {
 
 /// The most probable set, if it has several effects, leaves more than noise, and the other forms of its effects have not
 /// been tried yet.
-fn unreformed(sets: &[Set], evidence: &Evidence) -> Option<usize> {
+fn with_untried_forms(sets: &[Set], evidence: &Evidence) -> Option<usize> {
     let best = best(sets);
     let set = &sets[best];
-    let is_open = !set.reformed && set.assembly.effects().len() > 1 && leaves_more_than_noise(set, evidence);
+    let is_open = !set.forms_tried && set.assembly.effects().len() > 1 && leaves_more_than_noise(set, evidence);
     is_open.then_some(best)
 }
 

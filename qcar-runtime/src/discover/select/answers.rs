@@ -24,7 +24,7 @@ pub fn answers(sets: &[Set], evidence: &Evidence) -> Vec<Answer> {
         .collect();
     let mut answers: Vec<Answer> = Vec::new();
     for (place, probability) in probability.iter().copied().enumerate() {
-        let place = reduced(place, sets, evidence);
+        let place = simplified(place, sets, evidence);
         let dismissed = supported[place] != place && sets[supported[place]].names().is_empty();
         let set = if dismissed {
             place
@@ -54,10 +54,10 @@ pub fn answers(sets: &[Set], evidence: &Evidence) -> Vec<Answer> {
     answers
 }
 
-/// A simpler set at the same places in place of one with a parameter at its bound that leaves more than noise: its law
-/// then reduces to a simpler one, as two slopes reduce to dry friction. The simpler set must explain nearly all of the
-/// excess residual.
-fn reduced(place: usize, sets: &[Set], evidence: &Evidence) -> usize {
+/// The set itself, or a simpler one at the same places if it has a parameter at its bound and leaves more than noise: its
+/// law then reduces to a simpler one, as two slopes of a damper reduce to dry friction. The simpler set must explain
+/// most of the excess residual.
+fn simplified(place: usize, sets: &[Set], evidence: &Evidence) -> usize {
     let set = &sets[place];
     let base = &sets[best_base(sets)];
     let is_simpler = |&other: &usize| {

@@ -25,8 +25,8 @@ pub struct Set {
     pub log_prior: f64,
     /// True once extensions of the set have been tried.
     pub extended: bool,
-    /// True once its effects have been replaced by their other forms.
-    pub reformed: bool,
+    /// True once the other forms of its effects have been tried.
+    pub forms_tried: bool,
     /// True once its effects have been replaced by their rivals.
     pub exchanged: bool,
     /// True once it has been fitted without each of its effects.
@@ -45,7 +45,7 @@ impl Set {
             explanation,
             log_prior,
             extended: false,
-            reformed: false,
+            forms_tried: false,
             exchanged: false,
             reduced: false,
             rivals: Vec::new(),
