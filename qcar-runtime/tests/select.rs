@@ -230,6 +230,23 @@ fn an_effect_whose_magnitude_stands_at_its_end_is_no_answer() {
     assert_eq!(found.findings[0].effect, "heavy");
 }
 
+/// With its mount at the soft end of the range, still too stiff, the mass explains most. It sends a parameter of the
+/// model to its bound for that, and leaves more than noise.
+#[test]
+fn an_effect_that_takes_the_place_of_a_parameter_is_no_answer() {
+    let stiff = Hanging {
+        stiffness: (300e3, 2e6),
+        ..Hanging::new("stiff", (20.0, 200.0))
+    };
+    let unknown = answer(vec![stiff], false, &evidence(0.0, &LEVELS));
+    assert_eq!(unknown.verdict, Verdict::Unknown);
+    let candidate = &unknown.candidates[0];
+    assert!(
+        candidate.effect == "stiff" && candidate.explained > 0.5,
+        "{candidate:?}"
+    );
+}
+
 /// With a sensor that is 3 ms late, the mass of 70 kg looks lighter than 69.4 kg until the delay is in the model.
 #[test]
 fn what_a_nuisance_had_hidden_is_found_once_it_is_fitted() {

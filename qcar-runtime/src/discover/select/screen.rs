@@ -412,3 +412,45 @@ fn shifted(parameter: &Added, shift: f64) -> f64 {
         parameter.start + (end - parameter.start) * shift.abs()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Point, is_force_strength};
+    use crate::discover::candidate::{Added, ParameterRole};
+
+    fn added(start: f64, role: ParameterRole, scales_force: bool) -> Added {
+        Added {
+            name: String::new(),
+            effect_name: String::new(),
+            start,
+            range: (1e-3 * start, 1e3 * start),
+            known: false,
+            role,
+            scales_force,
+        }
+    }
+
+    /// A tenth of a mass on a tenth of its mount has the same frequency and damping ratio, and a gap stays. A ratio as
+    /// strength changes nothing else.
+    #[test]
+    fn a_smaller_effect_keeps_its_frequency_and_its_travel() {
+        let point = Point {
+            shifts: Vec::new(),
+            scale: 0.1,
+        };
+        let values = |parameters: &[Added]| -> Vec<f64> {
+            let scales = parameters.iter().any(is_force_strength);
+            let scaled = parameters.iter().map(|own| point.scaled(own, own.start, scales));
+            scaled.collect()
+        };
+        let strength = ParameterRole::Strength { vanishes_at: 0.0 };
+        let mass = added(80.0, strength, true);
+        let stiffness = added(3e5, ParameterRole::Shape, true);
+        let damping = added(500.0, ParameterRole::Other, true);
+        let gap = added(0.01, ParameterRole::Shape, false);
+        let all = [mass, stiffness.clone(), damping, gap];
+        assert_eq!(values(&all), [8.0, 3e4, 50.0, 0.01]);
+        let ratio = added(0.5, strength, false);
+        assert_eq!(values(&[ratio, stiffness]), [0.05, 3e5]);
+    }
+}
