@@ -358,27 +358,15 @@ fn a_second_effect_is_found_where_the_parameters_beside_the_first_are_far_off() 
         ("c_pwt_x", 472.0),
     ];
     let mount = [("k_volume", 300e3), ("inertance", 59.5), ("c_track", 535.0)];
-    let order = Order {
-        programme: Programme::fast(),
-        effects: vec![
+    let [mount, mass] = found_in_pair(
+        102_300,
+        [
             Hidden::new("suspended_mass", "body", &mass),
             Hidden::new("hydraulic_mount", "powertrain_mount", &mount),
         ],
-        ..Order::clean("c", 102_300)
-    };
-    let answer = answer_to(order);
-    assert_eq!(answer["verdict"], "found", "{answer}");
-    let effects = answer["effects"].as_array().expect("a list");
-    let mut places: Vec<String> = effects
-        .iter()
-        .map(|own| format!("{} at {}", own["name"], own["at"]))
-        .collect();
-    places.sort();
-    let expected = [
-        r#""hydraulic_mount" at "powertrain_mount""#,
-        r#""suspended_mass" at "body""#,
-    ];
-    assert_eq!(places, expected, "{answer}");
+    );
+    assert_eq!([&mount["name"], &mount["at"]], ["hydraulic_mount", "powertrain_mount"]);
+    assert_eq!([&mass["name"], &mass["at"]], ["suspended_mass", "body"]);
 }
 
 /// Alone, the resonator fits better with a soft mount fore and aft. Beside the mass above the other axle, which it
@@ -392,20 +380,29 @@ fn the_form_of_an_effect_is_chosen_again_beside_another() {
         ("k_wheel_z_other", 27.7e3),
         ("c_wheel_z_other", 1690.0),
     ];
-    let order = Order {
-        programme: Programme::fast(),
-        effects: vec![
+    let [other, resonator] = found_in_pair(
+        102_307,
+        [
             Hidden::new("secondary_resonator", "wheel", &resonator),
             Hidden::new("apparent_mass", "body", &other_axle),
         ],
-        ..Order::clean("c", 102_307)
-    };
-    let answer = answer_to(order);
+    );
+    assert_eq!(other["name"], "apparent_mass");
+    assert_eq!(resonator["name"], "secondary_resonator");
+    assert_eq!(resonator["form"], "vertical");
+}
+
+/// The two effects that are named, sorted by name, in a fast campaign with two hidden ones.
+fn found_in_pair(seed: u64, effects: [Hidden; 2]) -> [Value; 2] {
+    let answer = answer_to(Order {
+        programme: Programme::fast(),
+        effects: effects.into(),
+        ..Order::clean("c", seed)
+    });
     assert_eq!(answer["verdict"], "found", "{answer}");
-    let effects = answer["effects"].as_array().expect("a list");
-    assert_eq!(effects.len(), 2, "{answer}");
-    let resonator = effects.iter().find(|own| own["name"] == "secondary_resonator");
-    assert_eq!(resonator.expect("it is named")["form"], "vertical", "{answer}");
+    let mut found = answer["effects"].as_array().expect("a list").clone();
+    found.sort_by_key(|own| own["name"].to_string());
+    found.try_into().unwrap_or_else(|_| panic!("not two: {answer}"))
 }
 
 /// The manifest of such a campaign, changed.
