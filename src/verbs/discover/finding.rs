@@ -25,14 +25,21 @@ pub(super) fn table(finding: &Finding, of: &BTreeMap<String, String>) -> String 
     table.text()
 }
 
-pub(super) fn described(finding: &Finding, of: &BTreeMap<String, String>) -> String {
+/// Place, share of the residual, parameters and rivals. `among` is the number of findings of the same answer, which
+/// explain that share together.
+pub(super) fn described(finding: &Finding, among: usize, of: &BTreeMap<String, String>) -> String {
     let share = 100.0 * finding.explained;
+    let others = match among {
+        0 | 1 => "",
+        2 => ", with the other effect,",
+        _ => ", with the other effects,",
+    };
     let form = finding
         .form
         .as_deref()
         .map_or_else(String::new, |form| format!(" ({})", form.replace('_', " ")));
     let mut out = format!(
-        "{} at {}{form} explains {share:.1} % of the residual\n{}",
+        "{} at {}{form}{others} explains {share:.1} % of the residual\n{}",
         finding.effect,
         finding.at,
         table(finding, of)
@@ -70,7 +77,7 @@ mod tests {
             explained: 1.0,
             rivals: Vec::new(),
         };
-        let text = described(&finding, &BTreeMap::new());
+        let text = described(&finding, 1, &BTreeMap::new());
         assert!(text.ends_with("the fitted runs do not determine k_pwt_x\n"), "{text}");
     }
 }

@@ -82,7 +82,7 @@ pub(super) fn text(of: &Answer) -> String {
     );
     for (finding, law) in own.laws.iter().zip(&model.laws) {
         let _ = writeln!(out, "\n{} at {}: {}", finding.effect, finding.at, law.words);
-        out += &described(finding, &law.units);
+        out += &described(finding, own.laws.len(), &law.units);
         if let Some(file) = &law.file {
             let _ = writeln!(out, "effect file: {}", file.display());
         }

@@ -317,8 +317,10 @@ pub(super) fn text(of: &Answer) -> String {
     }
     out += &candidates(&of.discovery.candidates);
     out += &remaining(of);
+    let certain = of.discovery.certain_and_alternatives().0.len();
     for (place, (finding, units)) in of.discovery.findings.iter().zip(&of.units).enumerate() {
-        out += &format!("\n{}{}", choice(of, place), described(finding, units));
+        let among = if place < certain { certain } else { certain + 1 };
+        out += &format!("\n{}{}", choice(of, place), described(finding, among, units));
     }
     out += &nuisances::text(of);
     for (name, end) in at_bound(&of.discovery.after) {
