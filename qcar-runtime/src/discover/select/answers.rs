@@ -2,7 +2,7 @@
 
 use super::held_out::supported_part;
 use super::probability::probabilities;
-use super::set::{Set, best_base, explained_share, is_part, leaves_more_than_noise, most_probable};
+use super::set::{Set, best_base, is_part, most_probable};
 use crate::discover::numbers::Numbers;
 use crate::discover::observe::Evidence;
 
@@ -24,7 +24,6 @@ pub fn answers(sets: &[Set], evidence: &Evidence) -> Vec<Answer> {
         .collect();
     let mut answers: Vec<Answer> = Vec::new();
     for (place, probability) in probability.iter().copied().enumerate() {
-        let place = simplified(place, sets, evidence);
         let dismissed = supported[place] != place && sets[supported[place]].names().is_empty();
         let set = if dismissed {
             place
@@ -52,23 +51,6 @@ pub fn answers(sets: &[Set], evidence: &Evidence) -> Vec<Answer> {
         own.dismissed |= sets[own.set].is_limiting_case_of(&sets[first]);
     }
     answers
-}
-
-/// The set itself, or a simpler one at the same places if it has a parameter at its bound and leaves more than noise: its
-/// law then reduces to a simpler one, as two slopes of a damper reduce to dry friction. The simpler set must explain
-/// most of the excess residual.
-fn simplified(place: usize, sets: &[Set], evidence: &Evidence) -> usize {
-    let set = &sets[place];
-    let base = &sets[best_base(sets)];
-    let is_simpler = |&other: &usize| {
-        set.is_limiting_case_of(&sets[other])
-            && sets[other].places() == set.places()
-            && explained_share(base, &sets[other], evidence) >= evidence.numbers.explained()
-    };
-    if !leaves_more_than_noise(set, evidence) {
-        return place;
-    }
-    most_probable(sets, (0..sets.len()).filter(is_simpler)).unwrap_or(place)
 }
 
 /// The set to whose probability a set contributes. If the held-out runs support the whole set, that is the set itself.

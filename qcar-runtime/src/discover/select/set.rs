@@ -197,13 +197,6 @@ impl Set {
         self.assembly.effects().iter().filter(|own| !own.nuisance)
     }
 
-    /// Sorted places of these effects.
-    pub fn places(&self) -> Vec<&str> {
-        let mut places: Vec<&str> = self.named().map(|own| own.at.as_str()).collect();
-        places.sort_unstable();
-        places
-    }
-
     /// Sorted pairs of name and place of these effects.
     pub fn names(&self) -> Vec<(&str, &str)> {
         let mut names: Vec<_> = self.named().map(Placed::name).collect();
