@@ -7,6 +7,7 @@
 //
 // The tyre's circle meets the road by the area that both have in common, and the integrator is that of Dormand and Prince, of order 5(4).
 // States are in parts of their scales, so that one tolerance is both relative and absolute.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -28,6 +29,13 @@ typedef std::array<double, STATES> State;
 
 static std::map<std::string, double> p;
 static std::vector<std::array<double, 2>> road;
+
+// So many pieces of road at a time are skipped if the circle does not reach their bounds.
+constexpr std::size_t BLOCK = 8;
+struct Bounds {
+    double left, right, top;
+};
+static std::vector<Bounds> blocks;
 
 // Stiffness and damping over mass, per scale of what they multiply and of what they move.
 static double stiffness[AXES][MASSES][MASSES], damping[AXES][MASSES][MASSES], wheel_mass;
@@ -93,6 +101,21 @@ static double deflection_of(double area) {
     return radius * d;
 }
 
+static void bound() {
+    blocks.clear();
+    for (std::size_t first = 0; first + 1 < road.size(); first += BLOCK) {
+        const std::size_t last = std::min(first + BLOCK, road.size() - 1);
+        double top = road[first][1];
+        for (std::size_t k = first + 1; k <= last; k++) top = std::max(top, road[k][1]);
+        blocks.push_back({road[first][0], road[last][0], top});
+    }
+}
+
+static inline bool reaches(const Point &centre, const Bounds &of) {
+    const double dx = std::max({of.left - centre.x, centre.x - of.right, 0.0}), dz = std::max(centre.z - of.top, 0.0);
+    return dx * dx + dz * dz < radius * radius;
+}
+
 // The force on a wheel with its centre here, in x and z.
 static Point contact(const Point &centre, const Point &velocity, std::size_t &near) {
     while (near + 2 < road.size() && road[near + 1][0] < centre.x - radius) near++;
@@ -103,6 +126,10 @@ static Point contact(const Point &centre, const Point &velocity, std::size_t &ne
     int pieces = 0;
     const double squared = radius * radius;
     for (std::size_t k = near; k + 1 < road.size() && road[k][0] < centre.x + radius; k++) {
+        if ((k == near || k % BLOCK == 0) && !reaches(centre, blocks[k / BLOCK])) {
+            k += BLOCK - 1 - k % BLOCK;
+            continue;
+        }
         const Point from = {road[k][0] - centre.x, road[k][1] - centre.z}, to = {road[k + 1][0] - centre.x, road[k + 1][1] - centre.z};
         const Point d = {to.x - from.x, to.z - from.z};
         const double a = d.x * d.x + d.z * d.z, b = from.x * d.x + from.z * d.z, c = from.x * from.x + from.z * from.z - squared;
@@ -196,7 +223,7 @@ static void prepare() {
     const double patch = 2 * std::sqrt(d * (2 * radius - d));
     static_rate = 1 / patch, longest = 0.25 * patch / speed;
     // On the flat the tyre's damping is a drag, which a constant force balances.
-    near_piece = 0;
+    near_piece = 0, bound();
     traction = -contact({speed * start_time, height}, {speed, 0}, near_piece).x;
 }
 

@@ -349,12 +349,19 @@ pub(super) fn text(of: &Answer) -> String {
     out
 }
 
-/// The most probable effects as a table; empty without any.
+/// The most probable effects as a table; empty without any. An effect of an answer with several may explain little
+/// alone, so the columns say that they are of the effect alone.
 fn candidates(all: &[Probable]) -> String {
     if all.is_empty() {
         return String::new();
     }
-    let mut table = Table::new(["candidate", "at", "probability", "explains_%", "log_evidence"]);
+    let mut table = Table::new([
+        "candidate",
+        "at",
+        "probability",
+        "explains_alone_%",
+        "log_evidence_alone",
+    ]);
     for own in all {
         table.row(vec![
             own.effect.clone(),
