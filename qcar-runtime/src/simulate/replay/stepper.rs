@@ -10,8 +10,12 @@ use crate::solver::rk4;
 
 /// Largest error of a step, relative to the largest value of a state so far.
 const TOLERANCE: f64 = 1e-3;
-/// Most halvings of a step.
+/// Most halvings of a step for the sake of accuracy.
 const MOST: u8 = 4;
+/// Most halvings of a step that would otherwise diverge, as with a stiff friction at high speed.
+const MOST_OF_DIVERGING: u8 = 12;
+/// Error of a step that has diverged, relative to the tolerance: it is as large as the largest value of a state.
+const DIVERGED: f64 = 1.0 / TOLERANCE;
 /// Relative error below which the step length doubles: the error grows about 16 times.
 const ROOM: f64 = 1.0 / 32.0;
 
@@ -68,15 +72,20 @@ impl<'a> Stepper<'a> {
     }
 
     /// Takes a step with the inputs at its start, middle and end. Halves it as often as needed and returns the number
-    /// of halvings.
+    /// of halvings. A motion that has diverged all the same is NaN from then on.
     pub fn find(&mut self, inputs: [&[f64]; 3], x: &mut [f64]) -> u8 {
+        if x.iter().any(|x| !x.is_finite()) {
+            x.fill(f64::NAN);
+            return 0;
+        }
         let knew_slope = self.knows_slope && self.last == inputs[0];
         self.start[0].copy_from_slice(x);
         self.start[1].copy_from_slice(&self.k[4]);
         loop {
             let halvings = self.halvings;
             let error = self.parts(inputs, halvings, x);
-            if error <= 1.0 || halvings == MOST {
+            let is_halved_enough = halvings >= MOST && error < DIVERGED || halvings == MOST_OF_DIVERGING;
+            if error <= 1.0 || is_halved_enough {
                 let sizes = self.largest.iter_mut().zip(&*x);
                 sizes.for_each(|(largest, x)| *largest = largest.max(x.abs()));
                 if error < ROOM {
