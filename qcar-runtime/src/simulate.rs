@@ -16,6 +16,8 @@ mod sampling;
 mod equilibrium;
 // A model with its tyre and static load.
 mod car;
+// A point contact between the events at which its force jumps.
+mod held;
 // The equations of motion while the tyre rolls over a road.
 mod rolling;
 // Faster integration of linear axles.

@@ -35,7 +35,7 @@ pub use circle::{segment_area, segment_deflection};
 
 use std::cell::Cell;
 
-use crate::road::Road;
+use crate::road::{Road, Segment};
 use crate::shown::shown;
 
 /// A tyre's geometry.
@@ -203,6 +203,12 @@ impl Tyre {
             Geometry::Point => point::touch(self, road, wheel),
             Geometry::Radial => radial::touch(self, road, wheel),
         }
+    }
+
+    /// The contact of a point tyre with one straight piece of the road, which goes on beyond its ends. Without contact,
+    /// its deflection is negative.
+    pub(crate) fn touch_piece(&self, piece: &Segment, wheel: &Wheel) -> Touch {
+        point::touch_piece(self, piece, wheel)
     }
 
     /// The circle's overlap with the ground, in full.

@@ -141,6 +141,25 @@ fn what_cannot_be_met_names_what_stands_in_the_way() {
     );
 }
 
+/// `x ≥ 0.8` cannot be met with `x² ≤ 0.25`, which holds at x = 0.5. There the relative excess of the first falls by
+/// 1 / 0.8 and that of the second grows by 1 / 0.25 for each x, so the second has 1.25 / 4 times the part of the first.
+#[test]
+fn a_limit_that_is_met_has_its_part_in_the_conflict() {
+    let against = Formula(|x| vec![x[0], x[0] * x[0], x[0]]);
+    let variables = vec![variable("x", 0.0, 1.0, 0.4, None)];
+    let at_least = Limit {
+        sense: Sense::AtLeast,
+        ..at_most(0, 0.8)
+    };
+    let limits = vec![at_least, at_most(1, 0.25), at_most(2, 0.9)];
+    let found = search(&task(&against, variables, limits), 1, NO_PROGRESS).unwrap();
+    assert!(!found.met && (found.design[0] - 0.5).abs() < 1e-3, "{found:?}");
+    let [first, second] = [1.0 / 1.3125, 0.3125 / 1.3125];
+    for (share, exact) in found.multipliers.iter().zip([first, second, 0.0]) {
+        assert!((share - exact).abs() < 2e-3, "{found:?}");
+    }
+}
+
 /// ZDT1 (Zitzler, Deb and Thiele, Evol. Comp. 8, 2000): the front is `f2 = 1 - √f1`.
 #[test]
 fn the_front_of_zdt1() {

@@ -9,5 +9,6 @@ mod abreast;
 mod cleat_run;
 mod kc_rig;
 mod metrics;
+mod point;
 mod space;
 mod tangent;

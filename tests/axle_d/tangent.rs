@@ -154,7 +154,7 @@ fn derivatives_of_a_linear_axle_on_the_grid_of_the_samples_are_those_of_its_ride
         let mut moved = parameters.clone();
         moved.set(k, parameters.as_slice()[k] * (1.0 + PART));
         let found = variation(&car, &drive, &outputs, &[(moved.as_slice(), PART)], FINE);
-        let found = found.expect("it rides").expect("axle D is linear");
+        let found = found.expect("it rides");
         for (signal, found) in found[0].iter().enumerate() {
             worst = worst.max(error(found, &exact_slopes[signal], &exact.signals[signal]));
         }
@@ -243,7 +243,7 @@ impl<'m> Thrown<'m> {
         let moved = self.moved(name, PART);
         let (car, drive) = (self.car(here), self.drive());
         let found = variation(&car, &drive, &outputs, &[(&moved, PART)], points_a_sample);
-        found.expect("it rides").expect("no point contact").remove(0)
+        found.expect("it rides").remove(0)
     }
 
     /// The same derivatives, integrated with the motion.

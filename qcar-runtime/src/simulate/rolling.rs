@@ -5,6 +5,7 @@ use std::cell::Cell;
 use super::car::Car;
 use super::equilibrium;
 use super::failure::{SimulateError, positive};
+use super::held::{self, Held};
 use super::settings::scales;
 use crate::model::{Contact, ContactAbout, Model};
 use crate::road::Road;
@@ -31,6 +32,8 @@ pub(super) struct Rolling<'a, M: ?Sized> {
     pub traction: f64,
     /// The piece of road that was last under the tyre.
     pub piece: Cell<usize>,
+    /// For derivatives, what a point contact is held on until its next event.
+    pub held: Option<Held>,
     /// Position of the next vertical step, m, for a tyre that responds to a step at once.
     smooth_until: f64,
     /// Sharp edges of the road. The force of a circle has a kink when its rim reaches one of these points.
@@ -101,6 +104,7 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
             locked: car.locked(contact),
             traction: 0.0,
             piece: Cell::new(0),
+            held: None,
             smooth_until: f64::INFINITY,
             edges: edges(tyre.geometry(), road),
             level_from,
@@ -282,6 +286,9 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
     #[inline(always)]
     pub fn touch(&self, t: f64, x: &[f64]) -> Option<Touch> {
         let mut wheel = self.wheel(t, x);
+        if let Some(held) = &self.held {
+            return held.touch(&self.tyre, self.road, &wheel);
+        }
         // Before a step of the road becomes an event, the solver extrapolates as if there were none.
         wheel.position[0] = wheel.position[0].min(self.smooth_until);
         self.tyre.touch_near(self.road, &wheel, &self.piece)
@@ -306,11 +313,27 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
         }
     }
 
-    /// The first time after `from` at which the rim of the tyre reaches or leaves an edge of the road, predicted at
-    /// time `t`.
+    /// What a point contact is held on from time `t` to its next event; `None` for other tyres.
+    pub fn held_at(&self, t: f64, x: &[f64]) -> Option<Held> {
+        let is_point = self.tyre.geometry() == Geometry::Point;
+        is_point.then(|| Held::of(&self.tyre, self.road, &self.wheel(t, x)))
+    }
+
+    /// The event functions of a contact that is held, and their rates.
+    pub fn held_events(&self, t: f64, x: &[f64]) -> Option<[[f64; held::EVENTS]; 2]> {
+        let (held, wheel) = (self.held?, self.wheel(t, x));
+        Some([Held::events, Held::rates].map(|of| of(&held, &self.tyre, self.road, &wheel)))
+    }
+
+    /// The first time after `from` at which the rim of the tyre reaches or leaves an edge of the road, or a held point
+    /// the end of its piece, predicted at time `t`.
     pub fn next_kink(&self, t: f64, x: &[f64], dx: &[f64], from: f64) -> f64 {
         let (wheel, radius) = (self.wheel(t, x), self.tyre.radius());
         let acceleration = [self.wheel.x.map_or(0.0, |x| dx[x[1]]), dx[self.wheel.z[1]]];
+        if let Some(held) = &self.held {
+            let end = t + held.until_end(self.road, &wheel, acceleration[0]);
+            return if end > from { end } else { f64::INFINITY };
+        }
         let near = self.edges_near(wheel.position);
         let crossings = near.flat_map(|edge| crossings(&wheel, acceleration, radius, edge));
         let times = crossings.map(|after| t + after).filter(|&time| time > from);
@@ -333,7 +356,10 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
     #[inline]
     fn contact(&self, touch: Option<&Touch>, x: &[f64]) -> Contact {
         let law = |s: f64, v: f64| self.model.contact_force(&self.constants, x, s, v);
-        touch.map_or(Contact::default(), |touch| touch.force(law))
+        touch.map_or(Contact::default(), |touch| match self.held {
+            Some(_) => touch.continued_force(law),
+            None => touch.force(law),
+        })
     }
 
     /// The forces on the wheel relative to rest: that of the contact, minus the static load, which the preloads of the

@@ -240,6 +240,21 @@ impl Tape {
         self.next += 1;
     }
 
+    /// Adds an impulse of each signal at time `t` (s), in its unit times a second, to the recorded points beside it.
+    pub fn add_impulse(&mut self, t: f64, impulses: impl Iterator<Item = f64>) {
+        let (every, length) = (self.grid.filter.oversampling, self.grid.points_of_phase());
+        let place = (t - self.grid.start()) / self.grid.spacing;
+        if place < 0.0 || place + 1.0 >= self.grid.points() as f64 {
+            return;
+        }
+        let (point, after) = (place as usize, place.fract());
+        for (track, impulse) in self.tracks.chunks_exact_mut(every * length).zip(impulses) {
+            for (point, share) in [(point, 1.0 - after), (point + 1, after)] {
+                track[point % every * length + point / every] += share * impulse / self.grid.spacing;
+            }
+        }
+    }
+
     /// Leaves out the points before a sample at time `t` (s).
     pub fn skip_to(&mut self, t: f64) {
         if self.next(t.next_down()).is_none() {

@@ -5,9 +5,15 @@
 //! differentiation (Bock, "Recent advances in parameter identification techniques for ODE", 1983). It needs only the
 //! equations of a model; its error is about 1e-9. The force of an [area](crate::tyre::Geometry::Area) tyre is
 //! continuous at kinks, and when the tyre leaves and regains the ground, so the sensitivities do not jump there.
+//!
+//! The force of a [point](crate::tyre::Geometry::Point) contact jumps at events `g(t, x) = 0` (`simulate/held`), and so
+//! do the sensitivities, by `(f⁻ - f⁺) dt/dε` with the shift of the event `dt/dε = -(∂g/∂x S) / (dg/dt)` (Rozenvasser,
+//! "General sensitivity equations of discontinuous systems", Autom. Remote Control 28, 1967). An output that jumps has
+//! an impulse `(y⁻ - y⁺) dt/dε` in its derivative, which the filter spreads over the samples.
 
 use super::car::Car;
 use super::failure::SimulateError;
+use super::held::EVENTS;
 use super::ride::{Drive, oversampling};
 use super::rolling::Rolling;
 use super::sampling::{Grid, Tape};
@@ -66,7 +72,7 @@ pub fn tangent<M: Model + ?Sized>(
         longest_step,
         most_steps: settings.most_steps,
     };
-    let report = DormandPrince::new(settings, 1).integrate(&mut varied, span, &[], &mut states);
+    let report = DormandPrince::new(settings, EVENTS).integrate(&mut varied, span, &[], &mut states);
     if report.reason.is_success() {
         Ok(varied.tangent())
     } else {
@@ -87,6 +93,10 @@ struct PerturbedModels<'a, M: ?Sized> {
     states: usize,
     outputs: usize,
     tape: Tape,
+    /// The event of a point contact that has just happened.
+    crossed: Option<usize>,
+    /// Impulses in the derivatives of the outputs, with their times, s: a row of all signals each.
+    impulses: Vec<(f64, Vec<f64>)>,
     /// Buffers for a state with its sensitivities, and for the rates and signals of a point.
     state: Vec<f64>,
     rates: Vec<f64>,
@@ -120,6 +130,8 @@ impl<'a, M: Model + ?Sized> PerturbedModels<'a, M> {
         };
         Self {
             tape: Tape::new(grid, ways * (outputs + 1)),
+            crossed: None,
+            impulses: Vec::new(),
             state: vec![0.0; ways * states],
             rates: vec![0.0; ways * (states + outputs + 1)],
             neighbour: [neighbour.clone(), neighbour],
@@ -138,7 +150,10 @@ impl<'a, M: Model + ?Sized> PerturbedModels<'a, M> {
         self.rates = rates;
     }
 
-    fn tangent(&self) -> Tangent {
+    fn tangent(mut self) -> Tangent {
+        for (time, impulses) in std::mem::take(&mut self.impulses) {
+            self.tape.add_impulse(time, impulses.into_iter());
+        }
         let signals = |way: usize| -> Vec<Vec<f64>> {
             let first = way * (self.outputs + 1);
             let outputs = (first..first + self.outputs).map(|signal| self.tape.filtered(signal));
@@ -150,6 +165,64 @@ impl<'a, M: Model + ?Sized> PerturbedModels<'a, M> {
             signals: signals(0),
             slopes: (1..=self.moved.len()).map(signals).collect(),
         }
+    }
+}
+
+/// A point contact at an event: rates and outputs just before or just after it.
+struct Side {
+    rate: Vec<f64>,
+    outputs: Vec<f64>,
+}
+
+impl<M: Model + ?Sized> PerturbedModels<'_, M> {
+    fn side(&self, t: f64, x: &[f64]) -> Side {
+        let mut side = Side {
+            rate: vec![0.0; self.states],
+            outputs: vec![0.0; self.outputs],
+        };
+        self.rolling.motion(t, x, &mut side.rate, &mut side.outputs);
+        side
+    }
+
+    /// For each direction the derivative of the time of an event by ε; zero for a motion that only touches it.
+    fn shifts(&self, event: usize, t: f64, z: &[f64]) -> Vec<f64> {
+        let (x, sensitivities) = z.split_at(self.states);
+        let value = |rolling: &Rolling<'_, M>, s: &[f64], step: f64| {
+            let beside = along(x, s, step);
+            rolling.held_events(t, &beside).map_or(0.0, |[values, _]| values[event])
+        };
+        let rate = self.rolling.held_events(t, x).map_or(0.0, |[_, rates]| rates[event]);
+        let ways = self.moved.iter().zip(sensitivities.chunks_exact(self.states));
+        let shift = |([up, down], s): (&[Rolling<'_, M>; 2], &[f64])| {
+            let slope = (value(up, s, STEP) - value(down, s, -STEP)) / (2.0 * STEP);
+            if rate == 0.0 { 0.0 } else { -slope / rate }
+        };
+        ways.map(shift).collect()
+    }
+
+    /// Holds a point contact from here to its next event. The sensitivities jump if an event has brought it here.
+    fn hold(&mut self, t: f64, z: &mut [f64]) {
+        let crossing = self.crossed.take().map(|event| {
+            let (x, shifts) = (&z[..self.states], self.shifts(event, t, z));
+            (self.side(t, x), shifts)
+        });
+        let held = self.rolling.held_at(t, &z[..self.states]);
+        let all = self.moved.iter_mut().flatten().chain([&mut self.rolling]);
+        all.for_each(|rolling| rolling.held = held);
+        let Some((before, shifts)) = crossing else {
+            return;
+        };
+        let (x, sensitivities) = z.split_at_mut(self.states);
+        let after = self.side(t, x);
+        let mut impulses = vec![0.0; self.outputs + 1];
+        for (s, shift) in sensitivities.chunks_exact_mut(self.states).zip(&shifts) {
+            for ((s, before), after) in s.iter_mut().zip(&before.rate).zip(&after.rate) {
+                *s += (before - after) * shift;
+            }
+            let jumps = before.outputs.iter().zip(&after.outputs);
+            impulses.extend(jumps.map(|(before, after)| (before - after) * shift).chain([0.0]));
+        }
+        self.impulses.push((t, impulses));
     }
 }
 
@@ -200,11 +273,7 @@ impl<M: Model + ?Sized> System for PerturbedModels<'_, M> {
     }
 
     fn enter(&mut self, t: f64, z: &mut [f64]) {
-        let x = &z[..self.states];
-        let neighbours = self.moved.iter_mut().flatten();
-        neighbours
-            .chain([&mut self.rolling])
-            .for_each(|rolling| rolling.pass_steps(t, x));
+        self.hold(t, z);
     }
 
     fn next_kink(&self, t: f64, z: &[f64], dz: &[f64], from: f64) -> f64 {
@@ -228,17 +297,24 @@ impl<M: Model + ?Sized> System for PerturbedModels<'_, M> {
         }
     }
 
-    /// One event: the tyre loses or regains contact.
+    /// The tyre loses or regains contact; a point contact reaches the end of its piece of road.
     fn events(&self) -> usize {
-        1
+        EVENTS
     }
 
     fn event_values(&mut self, t: f64, z: &[f64], values: &mut [f64]) {
-        let grounded = self.rolling.touch(t, &z[..self.states]).is_some();
-        values[0] = if grounded { 1.0 } else { -1.0 };
+        let x = &z[..self.states];
+        match self.rolling.held_events(t, x) {
+            Some([held, _]) => values.copy_from_slice(&held),
+            None => {
+                let grounded = self.rolling.touch(t, x).is_some();
+                values.copy_from_slice(&[if grounded { 1.0 } else { -1.0 }, -1.0]);
+            }
+        }
     }
 
-    fn happen(&mut self, _event: &Event<'_>) -> After {
+    fn happen(&mut self, event: &Event<'_>) -> After {
+        self.crossed = self.rolling.held.map(|_| event.index);
         After::Restart
     }
 }

@@ -1,10 +1,12 @@
-//! Derivatives of a ride by the parameters of its car, for a fit: on the grid of the samples if the axle is linear.
+//! Derivatives of a ride by the parameters of its car, for a fit: on the grid of the samples if the axle is linear and
+//! the force of its tyre does not jump.
 //!
 //! Such an axle is linear apart from the inputs g from the contact: its force, and for a tyre with inner states its
 //! deflection and rate. The variational equations of all parameters, `dS/dt = A S + B (K S + ∂g/∂p) + ∂A/∂p x + ∂B/∂p
 //! g`, share the matrix of the axle and the derivatives `K` of the contact, so they are stepped together. Between
 //! points the inputs are taken as linear in time. A derivative is accurate to about one percent, which suffices for a
-//! least-squares fit. Those of any other axle are integrated with its motion by [`tangent`], which no grid limits.
+//! least-squares fit. Those of any other axle, and of a point contact, are integrated with the motion by [`tangent`],
+//! which no grid limits.
 
 // The matrices of the axle, and their derivatives by each parameter.
 mod matrices;
@@ -34,11 +36,10 @@ const TOGETHER: usize = 8;
 /// Number of changes in a direction: a change is some thousandths of a parameter, a direction as large as it.
 const CHANGES: f64 = 300.0;
 
-/// Derivatives of some `outputs` of a ride at its samples, for each of the `moved` parameter sets by its change. `None`
-/// for a point contact, whose force jumps.
+/// Derivatives of some `outputs` of a ride at its samples, for each of the `moved` parameter sets by its change.
 ///
 /// Those of a linear axle are accurate to about 1 % of the signal with two points per sample, and to about 5 % with
-/// one. Those of any other axle have the accuracy of its ride.
+/// one. Those of any other axle, and of a point contact, have the accuracy of its ride.
 ///
 /// # Errors
 /// Fails as [`ride`](super::ride()) does, and if a car with a moved set has no static equilibrium.
@@ -48,20 +49,17 @@ pub fn variation<M: Model + ?Sized>(
     outputs: &[usize],
     moved: &[(&[f64], f64)],
     points_a_sample: usize,
-) -> Result<Option<Vec<Vec<Vec<f64>>>>, SimulateError> {
+) -> Result<Vec<Vec<Vec<f64>>>, SimulateError> {
     let tyre = car.rolling_tyre();
     drive.check(&tyre)?;
     if moved.is_empty() {
-        return Ok(Some(Vec::new()));
+        return Ok(Vec::new());
     }
     let grid = Grid::new(drive.sample_rate, drive.samples, points_a_sample);
     let start = drive.start(&tyre).min(grid.start());
-    if tyre.geometry() == Geometry::Point {
-        return Ok(None);
-    }
     let (rolling, x) = Rolling::at_rest(car, drive.road, drive.speed, start)?;
-    if !rolling.is_linear_beside_contact() {
-        return integrated(car, drive, outputs, moved).map(Some);
+    if tyre.geometry() == Geometry::Point || !rolling.is_linear_beside_contact() {
+        return integrated(car, drive, outputs, moved);
     }
     let axle = Axle::of(&rolling, outputs);
     let mut directions = Vec::with_capacity(moved.len());
@@ -75,7 +73,10 @@ pub fn variation<M: Model + ?Sized>(
         ));
     }
     let begins = drive.reaches(&tyre).max(start);
-    Ok(Variation::new(rolling, axle, directions, grid, begins, x).map(Variation::slopes))
+    match Variation::new(rolling, axle, directions, grid, begins, x) {
+        Some(variation) => Ok(variation.slopes()),
+        None => integrated(car, drive, outputs, moved),
+    }
 }
 
 /// The derivatives of any axle, integrated with its motion.

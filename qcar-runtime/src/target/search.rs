@@ -6,7 +6,7 @@
 use rayon::prelude::*;
 
 use super::quadratic::Quadratic;
-use super::task::{Task, is_met};
+use super::task::Task;
 use crate::progress::OnProgress;
 use crate::random::SplitMix;
 
@@ -22,7 +22,7 @@ pub struct Found {
     /// Violation of each limit and coupling, relative to its size; at most zero if it is met.
     pub excess: Vec<f64>,
     /// Decrease of the cost if a limit were looser by its own size. If not all limits are met: the share of each limit
-    /// in the conflict, from 0 to 1.
+    /// in the conflict, from 0 to 1, also of those that are met at the expense of others; zero for wishes.
     pub multipliers: Vec<f64>,
     /// True if all limits and couplings are met.
     pub met: bool,
@@ -308,21 +308,19 @@ fn to_available(task: &Task<'_>, from: State) -> State {
 
 fn found(task: &Task<'_>, state: State) -> Found {
     let met = state.met;
-    let total: f64 = state
-        .excess
-        .iter()
-        .zip(&state.multipliers)
-        .filter(|(e, _)| !is_met(**e))
-        .map(|(_, m)| m)
-        .sum();
-    let multiplier = |(excess, own): (&f64, &f64)| match met {
-        true => *own,
-        false if !is_met(*excess) => own / total.max(f64::MIN_POSITIVE),
-        false => 0.0,
+    // A limit that is met may stand in the way too: what is missed would shrink if it were looser.
+    let own = |at: usize| match task.wish(at) {
+        Some(_) => 0.0,
+        None => state.multipliers[at],
+    };
+    let total: f64 = (0..state.multipliers.len()).map(own).sum();
+    let multiplier = |at: usize| match met {
+        true => state.multipliers[at],
+        false => own(at) / total.max(f64::MIN_POSITIVE),
     };
     Found {
         design: task.design(&state.places),
-        multipliers: state.excess.iter().zip(&state.multipliers).map(multiplier).collect(),
+        multipliers: (0..state.multipliers.len()).map(multiplier).collect(),
         values: state.values,
         cost: state.cost,
         excess: state.excess,

@@ -16,6 +16,19 @@ impl Touch {
         self.pushing(self.strains().map(|[s, v]| law(s, v)))
     }
 
+    /// The same for a point contact that is continued into the air: as the point approaches, the spring pulls there as
+    /// much as it pushes at the opposite deflection, so that the force is smooth where the tyre lands.
+    pub(crate) fn continued_force(&self, law: impl Fn(f64, f64) -> f64) -> Contact {
+        let mut contact = self.pushing(self.strains().map(|[s, v]| law(s, v)));
+        if self.deflection < 0.0 && self.growth.rate > 0.0 {
+            // A law of a tyre may be zero where there is no deflection.
+            let [at_rest, growing] = [0.0, -self.growth.rate].map(|rate| law(self.deflection, rate));
+            let force = at_rest.min(0.0) + (at_rest - growing).max(0.0);
+            contact.force = [1, 0].map(|axis| force * self.direction[axis]);
+        }
+        contact
+    }
+
     /// Stretches and rates at which the law is evaluated: at rest, growing and shrinking.
     #[inline(always)]
     pub(crate) fn strains(&self) -> [[f64; 2]; 3] {

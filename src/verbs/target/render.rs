@@ -13,6 +13,9 @@ use crate::table::{Table, counted, noted, number, or_dash};
 use crate::units;
 use crate::verbs::sensitivity::render::reach;
 
+/// Least share in a conflict of a target that is met and named.
+const LEAST_SHARE: f64 = 0.01;
+
 /// As text for the terminal.
 pub(super) fn text(of: &Answer) -> String {
     let mut out = format!("{} ({})\n", of.subject, of.model);
@@ -47,10 +50,14 @@ fn verdict(of: &Answer) -> String {
     }
     let mut missed: Vec<&Target> = of.targets.iter().filter(|own| !own.met && own.wish.is_none()).collect();
     missed.sort_by(|a, b| b.multiplier.total_cmp(&a.multiplier));
-    let words = missed.iter().take(3).map(|own| {
+    let named = |own: &Target| {
         let run = own.run.as_ref().map_or(String::new(), |run| format!(" on {run}"));
-        format!("{}{run}, missed by {} %", own.metric, number(100.0 * own.excess, 2))
-    });
+        format!("{}{run}", own.metric)
+    };
+    let words = missed.iter().take(3);
+    let words = words.map(|own| format!("{}, missed by {} %", named(own), number(100.0 * own.excess, 2)));
+    let limiting = of.targets.iter().filter(|own| own.met && own.multiplier >= LEAST_SHARE);
+    let limiting: Vec<String> = limiting.map(named).collect();
     let bounds = of
         .parameters
         .iter()
@@ -62,6 +69,9 @@ fn verdict(of: &Answer) -> String {
         of.targets.len(),
         words.collect::<Vec<_>>().join("; ")
     );
+    if !limiting.is_empty() {
+        let _ = writeln!(out, "Met, but in the way of these: {}.", limiting.join("; "));
+    }
     if !bounds.is_empty() {
         let _ = writeln!(out, "At an end of their range: {}.", bounds.join(", "));
     }

@@ -5,7 +5,6 @@
 //! Golub and Pereyra, SIAM J. Numer. Anal. 10, 1973).
 
 use nalgebra::Complex;
-use rayon::prelude::*;
 
 use super::measured::TIMING;
 use crate::discover::observe::{Delay, Evidence, Free, Means, Passage, PredictError, Prediction, Series, signal_of};
@@ -16,8 +15,7 @@ use crate::simulate::{Car, Drive, Method, Settings, SimulateError, Variant, ride
 
 /// Integration method; its error is far below that of a tyre model.
 const METHOD: Method = Method::Adaptive(3e-6);
-/// Parameter change for a finite difference over a point contact, relative to its value: large enough against the
-/// integration error, and small enough for the curvature.
+/// Change of a parameter relative to its value, along which derivatives are taken.
 const DIFFERENCE: f64 = 3e-3;
 /// Gauss-Newton steps for the shift; the first one achieves nearly all.
 const STEPS: usize = 4;
@@ -55,7 +53,9 @@ pub fn passage(
         reason,
     };
     let base = accelerations(model, values, passage, &outputs).map_err(failed)?;
-    let slopes = slopes(model, (values, &base), (&moved, &changes), passage, &outputs).map_err(failed)?;
+    let (car, drive) = car_and_drive(model, values, passage);
+    let moved: Vec<(&[f64], f64)> = moved.iter().map(Values::as_slice).zip(changes).collect();
+    let slopes = variation(&car, &drive, &outputs, &moved, passage.points_a_sample).map_err(failed)?;
     let measured = Measured {
         means: passage.means,
         delays: series
@@ -105,34 +105,6 @@ fn accelerations(
     };
     let ride = ride(&car, &drive, &settings)?;
     Ok(outputs.iter().map(|&output| ride.outputs[output].clone()).collect())
-}
-
-/// Derivatives of the outputs by each parameter that is `moved`: from the variational equations, or for a point
-/// contact, whose force jumps, from finite differences of passages.
-fn slopes(
-    model: &dyn Model,
-    (values, base): (&Values, &[Vec<f64>]),
-    (moved, changes): (&[Values], &[f64]),
-    passage: &Passage,
-    outputs: &[usize],
-) -> Result<Vec<Vec<Vec<f64>>>, SimulateError> {
-    let (car, drive) = car_and_drive(model, values, passage);
-    let sets: Vec<(&[f64], f64)> = moved
-        .iter()
-        .map(Values::as_slice)
-        .zip(changes.iter().copied())
-        .collect();
-    if let Some(slopes) = variation(&car, &drive, outputs, &sets, passage.points_a_sample)? {
-        return Ok(slopes);
-    }
-    let difference = |(moved, change): (&Values, &f64)| {
-        let mut there = accelerations(model, moved, passage, outputs)?;
-        for (there, here) in there.iter_mut().flatten().zip(base.iter().flatten()) {
-            *there = (*there - here) / change;
-        }
-        Ok(there)
-    };
-    moved.par_iter().zip(changes).map(difference).collect()
 }
 
 /// Measured series of a run.
