@@ -16,7 +16,7 @@ use std::process::Command;
 const LENGTHS: [usize; 4] = [10, 20, 40, 80];
 
 /// Verbs with their arguments; CHAIN stands for the model, CAMPAIGN for a campaign that drives it.
-const ASKED: [&str; 13] = [
+const ASKED: [&str; 14] = [
     "check CHAIN",
     "show CHAIN --stage equations",
     "show CHAIN --stage matrices",
@@ -27,6 +27,7 @@ const ASKED: [&str; 13] = [
     "frf CHAIN",
     "frf CHAIN --format json",
     "compare CHAIN CHAIN",
+    "kc CAMPAIGN/kc",
     "simulate CAMPAIGN/sweep",
     "simulate CAMPAIGN/history",
     "simulate CAMPAIGN/cleat",

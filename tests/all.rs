@@ -1,8 +1,6 @@
 //! Tests of the library and of searches in one program: each program is linked with all that it uses, and one that ends
 //! with a long test leaves other processors idle.
 
-#[path = "axle_d/main.rs"]
-mod axle_d;
 mod discover;
 mod evidence;
 mod examples;

@@ -703,10 +703,10 @@ fn an_effect_that_takes_the_place_of_a_parameter_is_no_answer() {
 }
 
 /// The curves of such sensors can imitate much of a drag on the body. It is named, since it is judged with the sensors
-/// that it needs.
+/// that it needs. Three sweeps of 20 s show it.
 #[test]
 fn an_effect_that_inaccurate_sensors_could_imitate_is_found() {
-    let answer = of_matrix(82, "hardware drag_to_ground@body seed 82");
+    let answer = answer_to(with_three_sweeps(of_case(82, "hardware drag_to_ground@body seed 82")));
     assert_eq!(answer["verdict"], "found", "{answer}");
     assert_eq!(answer["effects"][0]["name"], "drag_to_ground", "{answer}");
     assert_eq!(answer["effects"][0]["at"], "body", "{answer}");
@@ -722,8 +722,22 @@ fn a_law_takes_the_place_of_names_only_if_resampled_data_prefer_it() {
 }
 
 /// A model without effects takes the sensors for 16 times as inaccurate as data sheets say, and then predicts the
-/// held-out runs as well as the relaxing bushing. With the same sensors it does not.
+/// held-out runs as well as the relaxing bushing. With the same sensors it does not, which two short sweeps show.
 #[test]
+fn a_base_model_is_compared_with_the_same_sensors() {
+    let answer = answer_to(Order {
+        cleats: false,
+        programme: two_short_sweeps(),
+        ..of_case(99, "hardware bushing_relaxation@top_mount seed 99")
+    });
+    assert_eq!(answer["effects"][0]["name"], "bushing_relaxation", "{answer}");
+    // With sensors of its own, the base model leaves 1.0.
+    assert!(answer["gap"]["held_out"]["before"].as_f64() > Some(3.0), "{answer}");
+}
+
+/// The whole campaign of the test above, where such sensors would dismiss the effect.
+#[test]
+#[ignore = "it searches a whole campaign; .ci/run runs it"]
 fn inaccurate_sensors_of_the_base_model_do_not_dismiss_an_effect() {
     let answer = of_matrix(99, "hardware bushing_relaxation@top_mount seed 99");
     assert_eq!(answer["verdict"], "found", "{answer}");
@@ -782,6 +796,7 @@ fn are_at_the_mount(answer: &Value, verdict: &str, expected: &[&str]) {
 /// K&C curves reach three times the travel of the sweeps. The rate of this spring is 1.7 times that at rest at the end
 /// of the sweeps, and 19 times at the end of the K&C curves.
 #[test]
+#[ignore = "it searches a whole campaign; .ci/run runs it"]
 fn a_law_of_a_spring_reaches_the_travel_of_kc_curves() {
     let answer = of_matrix(61, "sinh_spring@spring 0 seed 61");
     let learned = &answer["learned"];

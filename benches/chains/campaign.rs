@@ -1,4 +1,4 @@
-//! Campaigns that drive a chain: by a sweep of its road, by any other record of it, and over a cleat.
+//! Campaigns that drive a chain: by a sweep of its road, by any other record of it, over a cleat, and on a K&C rig.
 
 use std::fmt::Write;
 use std::fs;
@@ -8,7 +8,7 @@ use std::path::Path;
 const SAMPLES: usize = 1000;
 const RATE: f64 = 500.0;
 
-/// Writes the campaigns `sweep`, `history` and `cleat` for the chain in a folder.
+/// Writes the campaigns `sweep`, `history`, `cleat` and `kc` for the chain in a folder.
 pub fn write(folder: &Path, masses: usize) {
     let swept = "peak_velocity = 0.1\nstart_frequency = 0.5\nend_frequency = 19.0\nspacing = \"linear\"\n";
     driven(&folder.join("sweep"), masses, ("sweep", swept));
@@ -18,6 +18,7 @@ pub fn write(folder: &Path, masses: usize) {
         ("time_history", "band_limited = true\n"),
     );
     cleat(&folder.join("cleat"), masses);
+    kc(&folder.join("kc"), masses);
 }
 
 /// By a record of its road, as a run of a kind with these keys.
@@ -49,7 +50,6 @@ fn cleat(folder: &Path, masses: usize) {
         "x,z,slope\n0,0,0\n0.5,0,0.1\n0.6,0.01,-0.1\n0.7,0,0\n40,0,0\n",
     );
     let vehicle = "[vehicle]\nr_tire = 0.33\nstatic_tire_load = 80.0\nstatic_tire_def = 0.02\n";
-    let roles = format!("[roles]\nwheel = \"q1\"\nbody = \"q{masses}\"\n");
     let run = format!(
         "[[run]]\nkind = \"cleat\"\nfile = \"record.csv\"\nrole = \"fit\"\nspeed = 8.0\nsample_rate = {RATE}\ncleat = \"bump\"\n\
          [[road]]\nname = \"bump\"\nfile = \"road.csv\"\n"
@@ -58,8 +58,30 @@ fn cleat(folder: &Path, masses: usize) {
     put(
         folder,
         "campaign.toml",
-        &format!("{}{roles}{channel}{run}", head(vehicle)),
+        &format!("{}{}{channel}{run}", head(vehicle), roles(masses)),
     );
+}
+
+/// The lowest mass is moved up and down, the highest is held, and the springs between them are in series.
+fn kc(folder: &Path, masses: usize) {
+    let stiffness = 4e3 / (masses - 1) as f64;
+    let mut curve = "displacement,force\n".to_string();
+    for sample in 0..=160_i32 {
+        let displacement = 0.02 - 5e-4 * f64::from((sample - 80).abs());
+        writeln!(curve, "{displacement},{}", stiffness * displacement).expect("a text takes what is written");
+    }
+    put(folder, "bounce.csv", &curve);
+    let run = "[[run]]\nkind = \"bounce\"\nfile = \"bounce.csv\"\nrole = \"fit\"\n";
+    let channel = channel("wheel", "q1");
+    put(
+        folder,
+        "campaign.toml",
+        &format!("{}{}{channel}{run}", head(""), roles(masses)),
+    );
+}
+
+fn roles(masses: usize) -> String {
+    format!("[roles]\nwheel = \"q1\"\nbody = \"q{masses}\"\n")
 }
 
 fn head(vehicle: &str) -> String {

@@ -11,6 +11,8 @@ pub use qcar_model as model;
 pub mod mean;
 // Dense matrices of a model at rest.
 pub mod matrices;
+// Sparse matrices as narrow bands.
+mod banded;
 // Loops compiled for each instruction set.
 mod vectors;
 // Support for generated models.

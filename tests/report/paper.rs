@@ -25,6 +25,12 @@ fn paper_has_every_column_and_every_run() {
         );
         assert!(text.contains(&format!("{height} mm, {speed} km/h")), "{text}");
     }
+    for model in ["axle_c", "axle_c_with_suspended_mass"] {
+        assert!(
+            text.contains(&format!("Equations of motion of {model}\n")),
+            "{model} in {text}"
+        );
+    }
     for map in ["first harmonic", "cleat runs", "K&C curves"] {
         assert!(text.contains(&format!("Baseline model: {map}")), "{map} in {text}");
     }

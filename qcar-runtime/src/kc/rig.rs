@@ -3,9 +3,10 @@
 //! Sub-frame, powertrain and top mount yield to the forces on them. So the gradient at the wheel is that of several
 //! links in series, and a parameter is found as the value for which the model has the measured gradient.
 
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DVector};
 
-use crate::matrices::{at_rest, dense};
+use crate::banded::Ordered;
+use crate::matrices::at_rest;
 use crate::model::{About, Contact, InputKind, Matrix, Model, StateKind};
 use crate::response::parameters::Values;
 use crate::roles::{OnRig, state};
@@ -31,7 +32,7 @@ const HALVINGS: usize = 60;
 /// The model is linearised at rest, and inner states of laws stay at zero, since friction is no gradient. The road
 /// moves with the wheel. `None` if wheel or body does not move along the axis, or if no force can act on the wheel.
 pub fn gradient<M: Model + ?Sized>(model: &M, p: &[f64], on: &OnRig, axis: &str, slope: Slope) -> Option<f64> {
-    let force = Rig::new(model, p, on, axis)?.force()?;
+    let force = Rig::new(model, p, on, axis)?.force();
     let found = match slope {
         Slope::Stiffness => force.re,
         Slope::Damping => force.im / SLOW,
@@ -161,8 +162,8 @@ pub(crate) fn of_unit_force<M: Model + ?Sized>(model: &M, p: &[f64], mass: &str,
 /// A linear model `dx/dt = A x + B u` with a unit displacement of its wheel.
 struct Rig<'a> {
     about: &'a About,
-    a: DMatrix<Complex<f64>>,
-    b: DMatrix<Complex<f64>>,
+    /// The nonzeros of the matrices, in the order of [`About::matrices`].
+    nonzeros: Vec<f64>,
     axis: &'a str,
     /// Acceleration of the wheel by a unit force.
     of_unit: f64,
@@ -178,8 +179,6 @@ impl<'a> Rig<'a> {
         let position = state(about, StateKind::Position, &on.wheel, axis)?;
         let moved = state(about, StateKind::Velocity, &on.wheel, axis)?;
         state(about, StateKind::Position, &on.body, axis)?;
-        let nonzeros = at_rest(model, p);
-        let [a, b] = [Matrix::A, Matrix::B].map(|which| dense(about, which, &nonzeros).map(Complex::from));
         let states = about.states.iter().enumerate();
         let prescribed = states.map(|(at, state)| {
             if at == position {
@@ -198,27 +197,54 @@ impl<'a> Rig<'a> {
             of_unit: of_unit_force(model, p, &on.wheel, axis)?[moved],
             prescribed: prescribed.collect(),
             about,
-            a,
-            b,
+            nonzeros: at_rest(model, p),
             axis,
             moved,
         })
     }
 
-    /// Complex force on the wheel for a unit displacement; `None` if the matrix is singular.
-    fn force(&self) -> Option<Complex<f64>> {
+    /// Complex force on the wheel for a unit displacement.
+    fn force(&self) -> Complex<f64> {
         let prescribed = &self.prescribed;
         let free: Vec<usize> = (0..prescribed.len()).filter(|&i| prescribed[i].is_none()).collect();
         let mut x = DVector::from_iterator(prescribed.len(), prescribed.iter().map(|x| x.unwrap_or_default()));
-        let u = self.inputs();
-        let missing = |x: &DVector<_>| x * Complex::new(0.0, SLOW) - &self.a * x - &self.b * &u;
         if !free.is_empty() {
-            let right = -missing(&x).select_rows(&free);
-            let rates = DMatrix::from_diagonal_element(x.len(), x.len(), Complex::new(0.0, SLOW)) - &self.a;
-            let answer = rates.select_rows(&free).select_columns(&free).lu().solve(&right)?;
+            let right = self.missing(&x).select_rows(&free);
+            let answer = self.among(&free).solution(Complex::new(0.0, SLOW), &right);
             free.iter().zip(answer.iter()).for_each(|(&i, value)| x[i] = *value);
         }
-        Some(missing(&x)[self.moved] / self.of_unit)
+        self.missing(&x)[self.moved] / self.of_unit
+    }
+
+    /// What a motion would need beside the model's own `dx/dt`.
+    fn missing(&self, x: &DVector<Complex<f64>>) -> DVector<Complex<f64>> {
+        let (u, mut missing) = (self.inputs(), x * Complex::new(0.0, SLOW));
+        for (entry, &value) in self.about.matrices.iter().zip(&self.nonzeros) {
+            let (row, column) = (usize::from(entry.row), usize::from(entry.column));
+            match entry.matrix {
+                Matrix::A => missing[row] -= x[column] * value,
+                Matrix::B => missing[row] -= u[column] * value,
+                Matrix::C | Matrix::D => {}
+            }
+        }
+        missing
+    }
+
+    /// A between the free states.
+    fn among(&self, free: &[usize]) -> Ordered {
+        let mut places = vec![None; self.prescribed.len()];
+        free.iter()
+            .enumerate()
+            .for_each(|(place, &state)| places[state] = Some(place));
+        let entries = self.about.matrices.iter().zip(&self.nonzeros);
+        let entries = entries.filter(|(entry, _)| entry.matrix == Matrix::A);
+        let nonzeros: Vec<_> = entries
+            .filter_map(|(entry, &value)| {
+                let [row, column] = [entry.row, entry.column].map(|state| places[usize::from(state)]);
+                Some((row?, column?, value))
+            })
+            .collect();
+        Ordered::of(free.len(), &nonzeros)
     }
 
     /// Input of the road, which moves with the wheel; all others are zero.
