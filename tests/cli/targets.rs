@@ -470,6 +470,26 @@ fn values_that_are_wanted_are_met_and_the_design_is_simulated() {
     );
 }
 
+/// The ranges are too small for the frequency. Damping that may not rise is met, but the damper could raise the frequency.
+#[test]
+fn what_cannot_be_met_says_what_stands_in_the_way() {
+    let folder = repository();
+    let frequency = "[[target]]\nmetric = \"mode.1.frequency\"\nat_least = \"150 %\"";
+    let told = |damping: &str, said: &[&str]| {
+        let damping = format!("{frequency}\n[[target]]\nmetric = \"mode.1.damping\"\n{damping}");
+        targets_of_axle_a(folder.path(), &damping);
+        let ran = run_line(folder.path(), "target targets.toml");
+        assert_eq!(ran.status, 1, "{}{}", ran.stdout, ran.stderr);
+        let missed = "the best misses 1 of 2. In conflict: mode.1.frequency, missed by";
+        assert!(ran.stdout.contains(missed), "{}", ran.stdout);
+        said.iter()
+            .for_each(|said| assert!(ran.stdout.contains(said), "{}", ran.stdout));
+    };
+    told("at_least = 0.05", &["range: k_wheel_z (upper), c_wheel_z (upper)."]);
+    let damped = ["in the way of these: mode.1.damping.", "range: k_wheel_z (upper)."];
+    told("at_most = 0.12", &damped);
+}
+
 /// A limit of another unit is as wrong for all three cleats, and a cut along a parameter whose range is wrong is no
 /// further mistake.
 #[test]
