@@ -308,8 +308,8 @@ fn is_tyre(direction: &Direction, link: &Link) -> bool {
     let mut found = false;
     names_in(&link.stretch, &mut |name| {
         let Some(last) = name.names.last() else { return };
-        found |=
-            coordinates(direction).any(|own| own.name.text == last.text && matches!(own.kind, CoordinateKind::Road));
+        let mut roads = coordinates(direction).filter(|own| matches!(own.kind, CoordinateKind::Road));
+        found |= roads.any(|own| own.name.text == last.text);
     });
     found
 }

@@ -171,7 +171,7 @@ impl<'a, M: Model + ?Sized> PredictedRun<'a, M> {
         let mut sign = || if random.uniform() < 0.5 { -1.0 } else { 1.0 };
         let off = value.iter().zip(&variance).map(|(value, variance)| {
             let size = (0.5 * (variance + misfit)).sqrt();
-            value * Complex::new(sign() * size, sign() * size).exp()
+            disturbed(*value, Complex::new(sign() * size, sign() * size))
         });
         Record {
             value: off.collect(),
@@ -288,4 +288,21 @@ fn seed(signal: &Signal) -> u64 {
     name.fold(14_695_981_039_346_656_037, |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(1_099_511_628_211)
     })
+}
+
+/// A value with a relative error. The error adds to the value, since at the end of a long chain the noise of a sensor may
+/// be a million times the signal.
+fn disturbed(value: Complex<f64>, relative_error: Complex<f64>) -> Complex<f64> {
+    value * (1.0 + relative_error)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn noise_that_drowns_the_signal_gives_a_number() {
+        let found = disturbed(Complex::new(1e-9, 0.0), Complex::new(1e6, -1e6));
+        assert!((found - Complex::new(1e-3, -1e-3)).norm() < 1e-8, "{found}");
+    }
 }

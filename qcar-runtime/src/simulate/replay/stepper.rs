@@ -13,7 +13,7 @@ const TOLERANCE: f64 = 1e-3;
 /// Most halvings of a step for the sake of accuracy.
 const MOST: u8 = 4;
 /// Most halvings of a step that would otherwise diverge, as with a stiff friction at high speed.
-const MOST_OF_DIVERGING: u8 = 12;
+const MOST_OF_DIVERGING: u8 = 6;
 /// Error of a step that has diverged, relative to the tolerance: it is as large as the largest value of a state.
 const DIVERGED: f64 = 1.0 / TOLERANCE;
 /// Relative error below which the step length doubles: the error grows about 16 times.
