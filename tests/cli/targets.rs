@@ -172,6 +172,37 @@ fn a_nonlinear_model_of_another_campaign_has_sensitivities() {
     }
 }
 
+/// The referee is a ride of the design with the parameters that `qcar target` has written.
+#[test]
+fn a_nonlinear_axle_is_designed() {
+    let folder = repository();
+    let patch = "patch axle_a digressive_damper --at damper --out bent.axle";
+    assert_eq!(run_line(folder.path(), patch).status, 0);
+    let text = "subject = \"bent.axle\"\ncampaign = \"models/campaigns/axle_a_rig\"\n\
+                [[target]]\nmetric = \"body_z.after_shake\"\nat_most = \"90 %\"\n\
+                [[parameter]]\nname = \"c0\"\nrange = [\"50 %\", \"200 %\"]\n\
+                [[parameter]]\nname = \"k_wheel_z\"\nrange = [\"50 %\", \"150 %\"]\n";
+    fs::write(folder.path().join("targets.toml"), text).unwrap();
+    let ran = run_line(folder.path(), "target targets.toml --format json --out designed");
+    assert_eq!(ran.status, 0, "{}{}", ran.stdout, ran.stderr);
+    let answer: Value = serde_json::from_str(&ran.stdout).unwrap();
+    let targets = answer["targets"].as_array().unwrap();
+    let own = targets.iter().find(|own| own["run"] == "cleat/v30_h20.csv.gz").unwrap();
+    let number = |key: &str| own[key].as_f64().unwrap();
+    assert!(
+        answer["met"] == true && number("design") <= 0.9001 * number("today"),
+        "{own}"
+    );
+    let again = run_line(
+        folder.path(),
+        "sensitivity bent.axle --campaign models/campaigns/axle_a_rig --params designed/parameters.toml --parameters c0 \
+         --metrics body_z.after_shake --format json",
+    );
+    let again: Value = serde_json::from_str(&again.stdout).unwrap();
+    let ridden = again["metrics"][0]["values"]["cleat/v30_h20.csv.gz"].as_f64().unwrap();
+    assert!((ridden / number("design") - 1.0).abs() < 1e-4, "{ridden} and {own}");
+}
+
 /// The next class of ISO 8608 has twice the amplitude, and what is felt of a smooth road grows as it.
 #[test]
 fn the_next_class_of_road_is_felt_twice() {

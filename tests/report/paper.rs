@@ -39,6 +39,15 @@ fn paper_has_every_column_and_every_run() {
     }
 }
 
+/// A wish may be missed, a target may not.
+#[test]
+fn a_wish_is_marked_as_one() {
+    let Some(browser) = printer_or_word() else { return };
+    let text = printed(&browser, &page(&Studied::targets()), &["-layout"]);
+    assert!(text.contains("(wish)"), "{text}");
+    assert!(text.contains("All targets that must hold are met"), "{text}");
+}
+
 /// Of each word with its height, or the width of one that is turned, none is below that of a text of six points.
 #[test]
 fn no_word_on_paper_is_too_small_to_read() {

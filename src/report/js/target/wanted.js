@@ -1,10 +1,12 @@
 // The targets, met or missed, and by how much.
 
 function wanted(data) {
-  const missed = data.targets.filter((own) => !own.met && own.wish === null);
+  const required = data.targets.filter((own) => own.wish === null);
+  const missed = required.filter((own) => !own.met);
+  const all = required.length < data.targets.length ? 'targets that must hold' : 'targets';
   const lead = data.met
-    ? `All targets are met, at a cost of ${number(data.cost)}.`
-    : `No design was found that meets all targets: the best misses ${missed.length} of ${data.targets.length}.`;
+    ? `All ${all} are met, at a cost of ${number(data.cost)}.`
+    : `No design was found that meets all ${all}: the best misses ${missed.length} of ${required.length}.`;
   const columns = [
     ['target', 'text'],
     ['run', 'text'],
@@ -53,8 +55,8 @@ function wanted(data) {
   return { element };
 }
 
-function limitOf({ sense, limit, unit }) {
-  return `${sense === 'at_most' ? '≤' : '≥'} ${quantity(limit, unit)}`;
+function limitOf({ sense, limit, unit, wish }) {
+  return `${sense === 'at_most' ? '≤' : '≥'} ${quantity(limit, unit)}${wish === null ? '' : ' (wish)'}`;
 }
 
 function judgedWord(own) {
