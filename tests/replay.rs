@@ -362,6 +362,51 @@ fn derivatives_agree(model: &str, times: usize, within: f64, by_states: bool) {
     }
 }
 
+/// Dry friction that sticks over a twelfth of a millimetre: at 10 m/s its state decays within 8 microseconds, a
+/// hundredth of a step. Sliding, it is a constant force.
+#[test]
+fn a_stiff_friction_at_high_speed_does_not_diverge() {
+    let text = "
+axle slider {
+    param m: kg = 2;
+    param f_dry: N = 4;
+    param k_dry: N/m = 48e3;
+    direction x {
+        mass body = m;
+        force push on body;
+        link friction: body {
+            state f: N;
+            rate f = k_dry * (v - abs(v) * f / f_dry);
+            force = f;
+        }
+        output body.position;
+    }
+}
+";
+    let model = load_text("slider", text)
+        .map_err(|failure| failure.to_string())
+        .unwrap();
+    let p = Values::resolve(model.about(), &BTreeMap::new(), &BTreeMap::new()).unwrap();
+    let (rate, push) = (400.0, 14.0);
+    let samples = vec![push; 801];
+    let recorded = Recorded {
+        excitation: 0,
+        power: 0,
+        samples: &samples,
+    };
+    let held = Between {
+        band_limited: false,
+        ..band_limited(rate, samples.len())
+    };
+    let position = vec![Reading::Output(0)];
+    let replay = replay(&*model, p.as_slice(), vec![recorded], held, position).unwrap();
+    let [without, with] = [0.0, 4.0].map(|friction| 0.5 * (push - friction) / 2.0 * 2.0_f64.powi(2));
+    let found = replay[0][800];
+    // Steps of the length at which the state just decays give the force to one percent.
+    let share = (found - with) / (without - with);
+    assert!(share.abs() < 0.01, "{found} m, expected {with} m");
+}
+
 #[test]
 fn records_that_do_not_fit_are_refused() {
     let (pad, force) = (find("axle_a").unwrap().model, find("one_mass").unwrap().model);
