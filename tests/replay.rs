@@ -145,6 +145,20 @@ fn it_does_not_matter_what_was_recorded_of_a_motion() {
 }
 
 /// One mass on a spring and damper under a force that steps at a sample: the step response in closed form.
+/// A reading under a force that is held from sample to sample.
+fn pushed(model: &dyn Model, p: &[f64], (samples, rate): (&[f64], f64), reading: Reading) -> Vec<f64> {
+    let recorded = Recorded {
+        excitation: 0,
+        power: 0,
+        samples,
+    };
+    let held = Between {
+        band_limited: false,
+        ..band_limited(rate, samples.len())
+    };
+    replay(model, p, vec![recorded], held, vec![reading]).unwrap().remove(0)
+}
+
 #[test]
 fn a_held_force_acts_from_its_sample_on() {
     let model = find("one_mass").unwrap().model;
@@ -153,17 +167,8 @@ fn a_held_force_acts_from_its_sample_on() {
     let mut p = vec![0.0; model.about().parameters.len()];
     (p[place("m_body")], p[place("c_body")], p[place("k_body")]) = (m, c, k);
     let samples: Vec<f64> = (0..400).map(|n| if n < first { 0.0 } else { 5.0 }).collect();
-    let recorded = Recorded {
-        excitation: 0,
-        power: 0,
-        samples: &samples,
-    };
-    let held = Between {
-        band_limited: false,
-        ..band_limited(rate, samples.len())
-    };
     let position = model.about().states.iter().position(|s| s.name == "z_body").unwrap();
-    let replay = replay(model, &p, vec![recorded], held, vec![Reading::State(position)]).unwrap();
+    let replayed = pushed(model, &p, (&samples, rate), Reading::State(position));
     let (decay, omega) = (c / (2.0 * m), (k / m - (c / (2.0 * m)).powi(2)).sqrt());
     let step = |t: f64| {
         let swing = (omega * t).cos() + decay / omega * (omega * t).sin();
@@ -173,7 +178,7 @@ fn a_held_force_acts_from_its_sample_on() {
             0.0
         }
     };
-    for (n, z) in replay[0].iter().enumerate() {
+    for (n, z) in replayed.iter().enumerate() {
         let expected = step((n as f64 - first as f64) / rate);
         assert!((z - expected).abs() < 1e-5 * 5.0 / k, "{n}: {z} {expected}");
     }
@@ -389,19 +394,9 @@ axle slider {
     let p = Values::resolve(model.about(), &BTreeMap::new(), &BTreeMap::new()).unwrap();
     let (rate, push) = (400.0, 14.0);
     let samples = vec![push; 801];
-    let recorded = Recorded {
-        excitation: 0,
-        power: 0,
-        samples: &samples,
-    };
-    let held = Between {
-        band_limited: false,
-        ..band_limited(rate, samples.len())
-    };
-    let position = vec![Reading::Output(0)];
-    let replay = replay(&*model, p.as_slice(), vec![recorded], held, position).unwrap();
+    let position = pushed(&*model, p.as_slice(), (&samples, rate), Reading::Output(0));
     let [without, with] = [0.0, 4.0].map(|friction| 0.5 * (push - friction) / 2.0 * 2.0_f64.powi(2));
-    let found = replay[0][800];
+    let found = position[800];
     // Steps of the length at which the state just decays give the force to one percent.
     let share = (found - with) / (without - with);
     assert!(share.abs() < 0.01, "{found} m, expected {with} m");
