@@ -796,7 +796,6 @@ fn are_at_the_mount(answer: &Value, verdict: &str, expected: &[&str]) {
 /// K&C curves reach three times the travel of the sweeps. The rate of this spring is 1.7 times that at rest at the end
 /// of the sweeps, and 19 times at the end of the K&C curves.
 #[test]
-#[ignore = "it searches a whole campaign; .ci/run runs it"]
 fn a_law_of_a_spring_reaches_the_travel_of_kc_curves() {
     let answer = of_matrix(61, "sinh_spring@spring 0 seed 61");
     let learned = &answer["learned"];
