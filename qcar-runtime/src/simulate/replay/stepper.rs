@@ -12,7 +12,8 @@ use crate::solver::rk4;
 const TOLERANCE: f64 = 1e-3;
 /// Most halvings of a step for the sake of accuracy.
 const MOST: u8 = 4;
-/// Most halvings of a step that would otherwise diverge, as with a stiff friction at high speed.
+/// Most halvings of a step that would otherwise diverge, as with a stiff friction at high speed. A choice: each further
+/// one admits twice the stiffness, for up to twice the work in fits that try it.
 const MOST_OF_DIVERGING: u8 = 6;
 /// Error of a step that has diverged, relative to the tolerance: it is as large as the largest value of a state.
 const DIVERGED: f64 = 1.0 / TOLERANCE;
