@@ -20,6 +20,7 @@ pub mod profile;
 
 use nalgebra::{DMatrix, DVector};
 use normal::NormalEquations;
+pub(crate) use normal::gram;
 use reflect::{Interior, Model, Step};
 
 /// Residuals and their Jacobian.

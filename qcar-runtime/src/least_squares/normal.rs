@@ -55,6 +55,12 @@ impl NormalEquations {
     }
 }
 
+/// `JᵀJ`.
+pub(crate) fn gram(jacobian: &DMatrix<f64>) -> DMatrix<f64> {
+    let columns: Vec<&[f64]> = jacobian.column_iter().map(|column| column.data.into_slice()).collect();
+    products(&columns)
+}
+
 /// The scalar products of all pairs of columns.
 pub(super) fn products(columns: &[&[f64]]) -> DMatrix<f64> {
     let mut sums = DMatrix::zeros(columns.len(), columns.len());

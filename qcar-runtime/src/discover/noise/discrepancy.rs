@@ -122,6 +122,20 @@ impl Discrepancy {
             .collect()
     }
 
+    /// As [`Self::log_likelihoods`], with one part for each [source](Key::has_source_of).
+    pub fn log_likelihoods_by_source(&self, mut residual: Vec<f64>) -> Vec<f64> {
+        self.whiten(&mut residual);
+        let mut sources: Vec<(&Key, f64)> = Vec::new();
+        for group in &self.groups {
+            let own: f64 = group.log_likelihoods(&residual).iter().sum();
+            match sources.iter_mut().find(|(known, _)| group.key.has_source_of(known)) {
+                Some((_, sum)) => *sum += own,
+                None => sources.push((&group.key, own)),
+            }
+        }
+        sources.into_iter().map(|(_, sum)| sum).collect()
+    }
+
     /// Sets every `τ` to its most probable value for these data residuals in units of their noise.
     pub fn estimate(&mut self, residual: &[f64]) {
         for group in &mut self.groups {

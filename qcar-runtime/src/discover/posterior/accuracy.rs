@@ -8,7 +8,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::problem::Posterior;
 use crate::discover::noise::{AccuracyClass, Known};
-use crate::least_squares::{Outcome, Problem};
+use crate::least_squares::{Outcome, Problem, gram};
 
 impl Posterior<'_> {
     /// Sets the accuracy class to the most probable one at the optimum of a search.
@@ -44,7 +44,7 @@ impl Marginal {
         }
         let is_other = |k: &usize| outcome.at_bound[*k] == 0 && !shelves.contains(k);
         let others: Vec<usize> = (0..posterior.variables()).filter(is_other).collect();
-        let hessian = outcome.jacobian.tr_mul(&outcome.jacobian);
+        let hessian = gram(&outcome.jacobian);
         let block = |rows: &[usize], columns: &[usize]| -> DMatrix<f64> {
             DMatrix::from_fn(rows.len(), columns.len(), |i, j| hessian[(rows[i], columns[j])])
         };

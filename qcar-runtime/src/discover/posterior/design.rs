@@ -16,8 +16,8 @@ use crate::campaign::Role;
 use crate::discover::noise::Nuisance;
 use crate::discover::observe::{Evidence, PredictError};
 use crate::fit::design::{ExpectedGain, ExpectedGains};
-use crate::least_squares::Problem;
 use crate::least_squares::information::Information;
+use crate::least_squares::{Problem, gram};
 use crate::model::Model;
 use crate::progress::{self, OnProgress};
 
@@ -107,7 +107,7 @@ fn log_information(jacobian: &DMatrix<f64>, counted: &[usize]) -> f64 {
     for (mut column, length) in scaled.column_iter_mut().zip(&lengths) {
         column /= *length;
     }
-    let Some(inverse) = scaled.tr_mul(&scaled).cholesky().map(|own| own.inverse()) else {
+    let Some(inverse) = gram(&scaled).cholesky().map(|own| own.inverse()) else {
         return f64::NAN;
     };
     let covariance = DMatrix::from_fn(counted.len(), counted.len(), |i, j| inverse[(counted[i], counted[j])]);

@@ -60,7 +60,19 @@ impl Explanation {
 
     /// Log likelihood of the runs of a role, up to a constant, for each part of the data; `None` without a discrepancy.
     pub fn log_likelihoods(&self, role: Role, evidence: &Evidence) -> Option<Vec<f64>> {
-        let discrepancy = self.refit.discrepancy.as_ref()?;
+        let discrepancy = self.refit.discrepancy.as_ref()?.carried_to(evidence, role);
+        Some(discrepancy.log_likelihoods(self.residual(role, evidence)))
+    }
+
+    /// Log likelihood of the fitted runs, up to a constant, for each source of errors: each sensor, and the tyre along
+    /// each axis; `None` without a discrepancy.
+    pub fn log_likelihoods_by_source(&self, evidence: &Evidence) -> Option<Vec<f64>> {
+        let discrepancy = self.refit.discrepancy.as_ref()?.carried_to(evidence, Role::Fit);
+        Some(discrepancy.log_likelihoods_by_source(self.residual(Role::Fit, evidence)))
+    }
+
+    /// Residual of the runs of a role, in units of the noise.
+    fn residual(&self, role: Role, evidence: &Evidence) -> Vec<f64> {
         let mut residual = Vec::new();
         for (place, series) in evidence.of_role(role) {
             let parts = if series.kind.complex() { 2 } else { 1 };
@@ -73,6 +85,6 @@ impl Explanation {
             let units = units.flat_map(|unit| std::iter::repeat_n(unit, parts));
             residual.extend(own.iter().zip(units).map(|(residual, unit)| residual * unit));
         }
-        Some(discrepancy.carried_to(evidence, role).log_likelihoods(residual))
+        residual
     }
 }

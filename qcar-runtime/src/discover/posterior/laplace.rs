@@ -2,13 +2,13 @@
 
 use std::ops::Range;
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use super::prior::SIDE;
 use super::problem::Posterior;
 use super::refit::Refit;
 use crate::least_squares::information::{Information, Unseen};
-use crate::least_squares::{Outcome, Problem};
+use crate::least_squares::{Outcome, Problem, gram};
 
 impl Posterior<'_> {
     /// Result of a search.
@@ -63,14 +63,12 @@ impl Posterior<'_> {
         let Some(discrepancy) = &self.discrepancy else {
             return f64::NAN;
         };
-        let mut scaled = outcome.jacobian.clone();
-        for (k, mut column) in scaled.column_iter_mut().enumerate() {
-            column *= match k.checked_sub(self.free.len()) {
-                Some(k) => self.sigmas[k],
-                None => 1.0 / self.prior_of(k, outcome.x[k]).1,
-            };
-        }
-        let hessian = scaled.tr_mul(&scaled);
+        let scale = |k: usize| match k.checked_sub(self.free.len()) {
+            Some(k) => self.sigmas[k],
+            None => 1.0 / self.prior_of(k, outcome.x[k]).1,
+        };
+        let scale = DVector::from_fn(self.variables(), |k, _| scale(k));
+        let hessian = gram(&outcome.jacobian).component_mul(&(&scale * scale.transpose()));
         let determinant = hessian
             .cholesky()
             .map_or(f64::NAN, |own| own.l_dirty().diagonal().map(f64::ln).sum());

@@ -16,6 +16,7 @@ use crate::discover::candidate::{Added, Candidate, Change, ParameterRole};
 use crate::discover::noise::{Discrepancy, Form};
 use crate::discover::observe::Evidence;
 use crate::discover::posterior::Refit;
+use crate::least_squares::gram;
 
 /// A candidate with its gain.
 pub struct Screened {
@@ -200,7 +201,7 @@ impl Tangent {
             .for_each(|mut column| known.whiten(column.as_mut_slice()));
         Self {
             data: evidence.of_role(Role::Fit).map(|(_, series)| series.residuals()).sum(),
-            hessian: white_jacobian.tr_mul(&white_jacobian).cholesky(),
+            hessian: gram(&white_jacobian).cholesky(),
             gradient: white_jacobian.tr_mul(&white),
             cost: known.cost() + white.norm_squared() / 2.0,
             discrepancy: known,
