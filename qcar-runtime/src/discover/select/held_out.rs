@@ -1,5 +1,6 @@
 //! Checks sets on the held-out runs, which no fit and no choice has used.
 
+use super::assembly::Placed;
 use super::set::{Set, excess, explained_share, is_part, most_probable};
 use crate::campaign::Role;
 use crate::discover::observe::Evidence;
@@ -44,10 +45,12 @@ pub fn predicts_better(set: &Set, other: &Set, evidence: &Evidence) -> bool {
 
 /// True if a set with inaccurate sensors is not certainly more probable than a part of it without the readings of some
 /// sensor, or without the passages along some axis. No sensor is less accurate than its data sheet by that much, so the
-/// model is wrong in another way, which may be common to everything that this sensor or the tyre shows.
+/// model is wrong in another way, which may be common to everything that this sensor or the tyre shows. Errors of
+/// sensors are exempt, since each is shown by one sensor.
 fn rests_on_one_source(set: &Set, part: &Set, evidence: &Evidence) -> bool {
     let by_source = |own: &Set| own.explanation.log_likelihoods_by_source(evidence);
-    if !set.has_inaccurate_sensors() {
+    let is_of_sensor = |own: &Placed| own.unknowns.are_of_sensor();
+    if !set.has_inaccurate_sensors() || set.added_to(part).all(is_of_sensor) {
         return false;
     }
     let (Some(own), Some(others)) = (by_source(set), by_source(part)) else {
