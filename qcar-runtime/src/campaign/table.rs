@@ -3,7 +3,7 @@
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
-use csv::{ByteRecord, ReaderBuilder, Terminator, Trim};
+use csv::{ByteRecord, ReaderBuilder, Terminator};
 
 use super::unit::{Declared, examples};
 use crate::bounded;
@@ -178,20 +178,24 @@ fn open(file: &Path) -> Result<csv::Reader<Box<dyn Read>>, InputError> {
     let bytes = bounded::table(file).map_err(|error| missing(file, &error.to_string()))?;
     Ok(ReaderBuilder::new()
         .flexible(true)
-        .trim(Trim::All)
         .terminator(Terminator::Any(b'\n'))
         .has_headers(false)
         .from_reader(Box::new(bytes.chain(&b"\n"[..]))))
 }
 
 /// Line of the record that was just read. Only line feeds end a record, and the last line gets one if the file has
-/// none, so the reader is always on the next line. A carriage return is trimmed.
+/// none, so the reader is always on the next line.
 fn line(reader: &csv::Reader<Box<dyn Read>>) -> u64 {
     reader.position().line() - 1
 }
 
+/// The cells without white space around them; the last one may end with a carriage return.
+fn cells(record: &ByteRecord) -> impl Iterator<Item = &[u8]> {
+    record.iter().map(<[u8]>::trim_ascii)
+}
+
 fn is_blank(record: &ByteRecord) -> bool {
-    record.iter().all(<[u8]>::is_empty) && record.len() < 2
+    record.len() < 2 && cells(record).all(<[u8]>::is_empty)
 }
 
 fn missing(file: &Path, found: &str) -> InputError {
@@ -226,9 +230,8 @@ fn names(file: &Path, reader: &mut csv::Reader<Box<dyn Read>>) -> Result<Vec<Str
         )
         .into());
     }
-    record
-        .iter()
-        .map(|name| text(file, Place::Line(1), name))
+    cells(&record)
+        .map(|name| text(file, || Place::Line(1), name))
         .map(|name| Ok(unmarked(name?).to_string()))
         .collect()
 }
@@ -238,10 +241,10 @@ fn unmarked(name: &str) -> &str {
     name.trim_start_matches('\u{feff}')
 }
 
-fn text<'a>(file: &Path, place: Place, bytes: &'a [u8]) -> Result<&'a str, InputError> {
+fn text<'a>(file: &Path, place: impl Fn() -> Place, bytes: &'a [u8]) -> Result<&'a str, InputError> {
     let remedy = "save the file as UTF-8 text; a compressed file needs a name that ends in .gz";
     std::str::from_utf8(bytes)
-        .map_err(|_| Problem::new(file, place, "bytes that are not text", "UTF-8 text", remedy).into())
+        .map_err(|_| Problem::new(file, place(), "bytes that are not text", "UTF-8 text", remedy).into())
 }
 
 fn push(table: &mut Table, record: &ByteRecord, line: u64) -> Result<(), InputError> {
@@ -253,7 +256,7 @@ fn push(table: &mut Table, record: &ByteRecord, line: u64) -> Result<(), InputEr
         let remedy = "complete the line; decimals take a point and columns a comma";
         return Err(Problem::new(&table.file, Place::Line(line), found, expected, remedy).into());
     }
-    for (at, bytes) in record.iter().enumerate() {
+    for (at, bytes) in cells(record).enumerate() {
         let number = number(&table.file, || Place::Cell(line, table.names[at].clone()), bytes)?;
         table.columns[at].push(number);
     }
@@ -262,7 +265,7 @@ fn push(table: &mut Table, record: &ByteRecord, line: u64) -> Result<(), InputEr
 }
 
 fn number(file: &Path, place: impl Fn() -> Place, bytes: &[u8]) -> Result<f64, InputError> {
-    let text = text(file, place(), bytes)?;
+    let text = text(file, &place, bytes)?;
     match text.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
         _ => {

@@ -113,8 +113,13 @@ pub(super) fn pseudo_inverse(regressors: &DMatrix<Complex<f64>>) -> DMatrix<Comp
         .zip(&norms)
         .for_each(|(mut column, norm)| column.unscale_mut(*norm));
     let finite = unit.iter().all(|entry| entry.is_finite());
-    let parts = finite.then(|| SVD::try_new_unordered(unit, true, true, 5.0 * f64::EPSILON, MOST_ITERATIONS));
-    let inverse = parts.flatten().and_then(|parts| parts.pseudo_inverse(SAME).ok());
+    let inverse = finite.then(|| {
+        // Far fewer rows are left to the iterations of the singular values.
+        let (q, r) = unit.qr().unpack();
+        let parts = SVD::try_new_unordered(r, true, true, 5.0 * f64::EPSILON, MOST_ITERATIONS)?;
+        parts.pseudo_inverse(SAME).ok().map(|inverse| inverse * q.adjoint())
+    });
+    let inverse = inverse.flatten();
     let nothing = || DMatrix::from_element(regressors.ncols(), regressors.nrows(), Complex::from(f64::NAN));
     let mut inverse = inverse.unwrap_or_else(nothing);
     inverse

@@ -1,5 +1,7 @@
 //! The names in the answer: the smallest set of hypotheses that reaches the required probability (a credible set).
 
+use rayon::prelude::*;
+
 use super::held_out::supported_part;
 use super::probability::probabilities;
 use super::set::{Set, best_base, is_part, most_probable};
@@ -20,6 +22,7 @@ pub struct Answer {
 pub fn answers(sets: &[Set], evidence: &Evidence) -> Vec<Answer> {
     let probability = probabilities(&sets.iter().collect::<Vec<_>>(), evidence);
     let supported: Vec<usize> = (0..sets.len())
+        .into_par_iter()
         .map(|place| supported_part(sets, place, evidence))
         .collect();
     let mut answers: Vec<Answer> = Vec::new();
