@@ -10,7 +10,10 @@ use std::path::Path;
 const SAMPLES: usize = 1000;
 const RATE: f64 = 500.0;
 
-/// Samples of each sweep of the campaign to be fitted.
+/// The masses with sensors in the campaign to be fitted: near the road, since a chain passes little on to its end.
+pub const SENSORS: [usize; 3] = [1, 2, 4];
+
+/// Samples of each of its sweeps.
 const SWEPT: usize = 10_000;
 
 /// Mass (kg), stiffness (N/m) and damping (N s/m) of each member.
@@ -42,7 +45,11 @@ fn driven(folder: &Path, masses: usize, (kind, keys): (&str, &str)) {
     let channels = [channel("road", "road_below"), channel("top", &format!("q{masses}"))].concat();
     let run =
         format!("[[run]]\nkind = \"{kind}\"\nfile = \"record.csv\"\nrole = \"fit\"\nsample_rate = {RATE}\n{keys}");
-    put(folder, "campaign.toml", &format!("{}{channels}{run}", head("")));
+    put(
+        folder,
+        "campaign.toml",
+        &format!("{}{channels}{run}", head("chain", "")),
+    );
 }
 
 fn cleat(folder: &Path, masses: usize) {
@@ -67,7 +74,7 @@ fn cleat(folder: &Path, masses: usize) {
     put(
         folder,
         "campaign.toml",
-        &format!("{}{}{channel}{run}", head(vehicle), roles(masses)),
+        &format!("{}{}{channel}{run}", head("chain", vehicle), roles(masses)),
     );
 }
 
@@ -85,14 +92,13 @@ fn kc(folder: &Path, masses: usize) {
     put(
         folder,
         "campaign.toml",
-        &format!("{}{}{channel}{run}", head(""), roles(masses)),
+        &format!("{}{}{channel}{run}", head("chain", ""), roles(masses)),
     );
 }
 
-/// Two sweeps of 20 s with sensors near the road, since a chain passes little on to its end, and the parameters with which they were simulated.
+/// Two sweeps of 20 s with three sensors, and the parameters with which they were simulated.
 fn fitted(folder: &Path, masses: usize) {
-    let sensors = [1, 2, 4];
-    let mut manifest = head("");
+    let mut manifest = head("few", "");
     for (name, start, unit) in [("k", 3.7e3, "N/m"), ("c", 33.0, "N s/m")] {
         let [low, high] = [0.5, 2.0].map(|factor| factor * start);
         write!(
@@ -103,14 +109,14 @@ fn fitted(folder: &Path, masses: usize) {
     }
     manifest += "[parameters.m]\nvalue = 2.0\nunit = \"kg\"\nfit = false\n";
     manifest += &channel("road", "road_below");
-    manifest.extend(sensors.map(|place| channel(&format!("q{place}"), &format!("q{place}"))));
+    manifest.extend(SENSORS.map(|place| channel(&format!("q{place}"), &format!("q{place}"))));
     for (role, level) in [("fit", 0.1), ("held_out", 0.05)] {
         let run = format!(
             "[[run]]\nkind = \"sweep\"\nfile = \"{role}.csv\"\nrole = \"{role}\"\nsample_rate = {RATE}\n\
              peak_velocity = {level}\nstart_frequency = 0.5\nend_frequency = 19.0\nspacing = \"linear\"\n"
         );
         manifest += &run;
-        put(folder, &format!("{role}.csv"), &swept(masses, sensors, level));
+        put(folder, &format!("{role}.csv"), &swept(masses, level));
     }
     put(folder, "campaign.toml", &manifest);
     let [m, k, c] = MEMBER;
@@ -122,7 +128,7 @@ fn fitted(folder: &Path, masses: usize) {
 }
 
 /// The record of a sweep from 0.5 to 19 Hz at a peak velocity (m/s) of the road, by Runge and Kutta's method.
-fn swept(masses: usize, sensors: [usize; 3], peak_velocity: f64) -> String {
+fn swept(masses: usize, peak_velocity: f64) -> String {
     let duration = SWEPT as f64 / RATE;
     let [m, k, c] = MEMBER;
     let ground = |time: f64| {
@@ -146,11 +152,11 @@ fn swept(masses: usize, sensors: [usize; 3], peak_velocity: f64) -> String {
         state.iter().zip(slope).map(|(own, slope)| own + by * slope).collect()
     };
     let (step, mut state) = (1.0 / RATE, vec![0.0; 2 * (masses + 1)]);
-    let mut record = format!("time,road,q{},q{},q{}\n", sensors[0], sensors[1], sensors[2]);
+    let mut record = "time,road,q1,q2,q4\n".to_string();
     for sample in 0..SWEPT {
         let time = sample as f64 * step;
         let a = slope(time, &state);
-        let [road, one, two, three] = [0, sensors[0], sensors[1], sensors[2]].map(|place| a[masses + 1 + place]);
+        let [road, one, two, three] = [0, SENSORS[0], SENSORS[1], SENSORS[2]].map(|place| a[masses + 1 + place]);
         writeln!(record, "{time},{road},{one},{two},{three}").expect("a text takes what is written");
         let b = slope(time + step / 2.0, &moved(&state, step / 2.0, &a));
         let c = slope(time + step / 2.0, &moved(&state, step / 2.0, &b));
@@ -165,8 +171,8 @@ fn roles(masses: usize) -> String {
     format!("[roles]\nwheel = \"q1\"\nbody = \"q{masses}\"\n")
 }
 
-fn head(vehicle: &str) -> String {
-    format!("format = 1\nname = \"chain\"\nmodel = \"../chain.axle\"\n[parameters]\n{vehicle}")
+fn head(model: &str, vehicle: &str) -> String {
+    format!("format = 1\nname = \"chain\"\nmodel = \"../{model}.axle\"\n[parameters]\n{vehicle}")
 }
 
 fn channel(name: &str, location: &str) -> String {
