@@ -64,7 +64,7 @@ impl Default for Numbers {
 }
 
 impl Numbers {
-    /// Names of the assumptions.
+    /// Names of the assumptions, as `qcar discover --assume` has them.
     pub const NAMES: [&str; 7] = [
         "expected_discrepancy",
         "common_to_levels",
