@@ -15,7 +15,7 @@ use std::process::Command;
 
 const LENGTHS: [usize; 4] = [10, 20, 40, 80];
 
-/// Verbs with their arguments; CHAIN stands for the model, CAMPAIGN for a campaign that drives it.
+/// Verbs with their arguments; CHAIN stands for the model, CAMPAIGN for the folder of the campaigns that drive it.
 const ASKED: [&str; 14] = [
     "check CHAIN",
     "show CHAIN --stage equations",
@@ -33,6 +33,28 @@ const ASKED: [&str; 14] = [
     "simulate CAMPAIGN/cleat",
 ];
 
+/// The same for FEW, the chain with channels to three of its masses, and TABLE, a new file. Only with three parameters.
+const ASKED_OF_FEW: [&str; 8] = [
+    "diff FEW CHAIN",
+    "patch FEW coulomb_friction --at l2",
+    "fit CAMPAIGN/fitted",
+    "plan CAMPAIGN/fitted",
+    "score CAMPAIGN/fitted",
+    "explore FEW --vary c=20..40 --count 16 --metrics modes,transmissibility --out TABLE",
+    "sensitivity FEW --metrics mode.*",
+    "target CAMPAIGN/targets.toml",
+];
+
+/// Targets for the damping of a mode.
+const TARGETS: &str = "subject = \"few.axle\"
+[[target]]
+metric = \"mode.1.damping\"
+at_least = \"110 %\"
+[[parameter]]
+name = \"c\"
+range = [\"70 %\", \"150 %\"]
+";
+
 fn main() {
     let valgrind = Command::new("valgrind").arg("--version").output();
     if valgrind.is_err() {
@@ -47,6 +69,9 @@ fn main() {
         println!("{what}: millions of instructions of {LENGTHS:?} masses; exponent from 10 to 80, from 40 to 80");
         LENGTHS.iter().for_each(|&masses| write(folder.path(), masses, own));
         ASKED.iter().for_each(|asked| measure(folder.path(), asked));
+        if !own {
+            ASKED_OF_FEW.iter().for_each(|asked| measure(folder.path(), asked));
+        }
     }
 }
 
@@ -54,19 +79,23 @@ fn main() {
 fn write(folder: &Path, masses: usize, own: bool) {
     let folder = folder.join(masses.to_string());
     fs::create_dir_all(&folder).expect("the folder is writable");
-    fs::write(
-        folder.join("chain.axle"),
-        with_channels(&chain::chain(masses, own), masses),
-    )
-    .expect("the folder is writable");
+    let chain = chain::chain(masses, own);
+    let files = [
+        ("chain.axle", with_channels(&chain, 1..=masses)),
+        ("few.axle", with_channels(&chain, campaign::SENSORS)),
+        ("targets.toml", TARGETS.to_string()),
+    ];
+    for (name, text) in files {
+        fs::write(folder.join(name), text).expect("the folder is writable");
+    }
     campaign::write(&folder, masses);
 }
 
-/// A channel from the road to each mass.
-fn with_channels(chain: &str, masses: usize) -> String {
+/// A channel from the road to each of these masses.
+fn with_channels(chain: &str, masses: impl IntoIterator<Item = usize>) -> String {
     let channel =
         |place: usize| format!("        channel to_q{place} = q{place}.acceleration / road_below.acceleration;\n");
-    let channels: String = (1..=masses).map(channel).collect();
+    let channels: String = masses.into_iter().map(channel).collect();
     let end = "    }\n}\n";
     chain.strip_suffix(end).expect("a chain ends its direction").to_string() + &channels + end
 }
@@ -83,7 +112,15 @@ fn measure(folder: &Path, asked: &str) {
 
 /// The instructions of a whole run of the program, in a folder.
 fn instructions(folder: &Path, asked: &str) -> f64 {
-    let asked = asked.replace("CHAIN", "chain.axle").replace("CAMPAIGN", ".");
+    let names = [
+        ("CHAIN", "chain.axle"),
+        ("FEW", "few.axle"),
+        ("CAMPAIGN", "."),
+        ("TABLE", "table.csv"),
+    ];
+    let asked = names
+        .iter()
+        .fold(asked.to_string(), |asked, (of, name)| asked.replace(of, name));
     let out = Command::new("valgrind")
         .args(["--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null"])
         .arg(env!("CARGO_BIN_EXE_qcar"))

@@ -684,10 +684,11 @@ fn inaccurate_sensors_are_no_effect_and_a_notice_says_so() {
     );
 }
 
-/// Calibration curves of another form than the model's leave no more than noise, but a compliant damper end beside them
-/// gains 8.5 in log evidence. Resampled data do not bear that out. It takes the whole campaign: with three sweeps of 20
-/// s, no effect gains more than 2.5, and without cleat runs a class of two effects is named either way.
+/// Calibration curves of another form than the model's leave no more than noise. A compliant damper end beside them
+/// gains 3.2 in log evidence, which other ranges of the effects had made 8.5. It takes cleat runs: without them, a class of
+/// two effects is named whether probabilities are bagged or not. That resampling decides is a test of `probability.rs`.
 #[test]
+#[ignore = "it searches a whole campaign; .ci/run runs it"]
 fn no_effect_is_named_for_calibration_curves_of_another_form() {
     let answer = of_matrix(101, "hardware d3 Calibration alone seed 101");
     assert_eq!(answer["effects"], Value::Array(Vec::new()), "{answer}");
@@ -794,12 +795,38 @@ fn are_at_the_mount(answer: &Value, verdict: &str, expected: &[&str]) {
 }
 
 /// K&C curves reach three times the travel of the sweeps. The rate of this spring is 1.7 times that at rest at the end
-/// of the sweeps, and 19 times at the end of the K&C curves.
+/// of the sweeps, and 19 times at the end of the K&C curves. A second bounce curve judges, which no named effect follows.
 #[test]
 fn a_law_of_a_spring_reaches_the_travel_of_kc_curves() {
-    let answer = of_matrix(61, "sinh_spring@spring 0 seed 61");
+    let folder = tempfile::tempdir().expect("a folder");
+    let campaign = folder.path().join("campaign");
+    let order = Order {
+        cleats: false,
+        programme: two_short_sweeps(),
+        ..hardening_spring()
+    };
+    make(order, &campaign).expect("a campaign");
+    fs::copy(campaign.join("kc/bounce.csv"), campaign.join("kc/again.csv")).expect("a curve");
+    edit(&campaign, |text| {
+        let judge = "[[run]]\nkind = \"bounce\"\nfile = \"kc/again.csv\"\nrole = \"held_out\"\n";
+        format!("{text}\n{judge}")
+    });
+    is_law_of_the_spring(&discover(&campaign, None));
+}
+
+#[test]
+#[ignore = "it searches a whole campaign; .ci/run runs it"]
+fn a_law_of_a_spring_is_learned_from_a_whole_campaign() {
+    is_law_of_the_spring(&answer_to(hardening_spring()));
+}
+
+fn hardening_spring() -> Order {
+    of_case(61, "sinh_spring@spring 0 seed 61")
+}
+
+fn is_law_of_the_spring(answer: &Value) {
     let learned = &answer["learned"];
-    assert_eq!(learned["laws"][0]["name"], "elastic_law", "{learned}");
+    assert_eq!(learned["laws"][0]["name"], "elastic_law", "{answer}");
     assert_eq!(learned["at"], "spring", "{learned}");
     assert!(learned["explained"].as_f64() > Some(0.95), "{learned}");
 }

@@ -45,6 +45,7 @@
       ...figures.filter((figure) => !figure.getAttribute('aria-label')),
       ...[...document.querySelectorAll('canvas')].filter((own) => !isNamed(own)),
     ].map((own) => own.outerHTML.slice(0, 80));
+    found.resized = await resized();
     found.alarms = document.querySelectorAll('.failure').length;
     found.faint = faint();
     found.dashes = dashes();
@@ -63,6 +64,20 @@
     found.themes = themes();
     await printed();
     await otherUnits();
+  }
+
+  // The width of the first plot before and after the page becomes narrower; null without a plot. An alarm about the
+  // layout would be among the errors.
+  async function resized() {
+    const plot = document.querySelector('.uplot');
+    if (!plot) return null;
+    const widths = [plot.clientWidth];
+    for (const width of ['300px', '']) {
+      document.body.style.width = width;
+      for (let k = 0; k < 3; k++) await frame();
+      widths.push(plot.clientWidth);
+    }
+    return widths;
   }
 
   // A canvas on which nothing was painted, or a drawing of no size.

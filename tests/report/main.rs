@@ -73,6 +73,8 @@ fn the_report_is_whole_in_a_browser() {
             let place = format!("{width} px, {theme}: {found}");
             check(&found, (width, &place), &STUDY);
             assert_eq!(found["sections"].as_array().unwrap().len(), 10, "{place}");
+            let [before, narrower, after] = [0, 1, 2].map(|at| found["resized"][at].as_f64().unwrap());
+            assert!(narrower < before && after == before, "{place}");
             let map = found["keyboard"]["map"].as_str().unwrap();
             assert!(map.contains("standard deviations"), "{place}");
             assert_eq!(changed, figures(&found).contains(&"gap-after"), "{}", study.said);

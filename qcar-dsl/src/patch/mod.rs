@@ -17,6 +17,8 @@ mod scale;
 mod stretch;
 // The terms of a link's law.
 mod terms;
+// The points that links connect.
+mod graph;
 // The role of each link: tyre, suspension, mount.
 mod roles;
 // The places where an effect applies.

@@ -48,8 +48,8 @@ pub fn numbers(base: &ModelTree, asked: &[Expression], values: Values) -> Vec<f6
         quantities.map(|(place, e)| as_quantity(&name(place), e)).collect(),
     );
     let answer = |place: usize| {
-        let mut definitions = model.definitions.iter();
-        let own = definitions.find(|definition| definition.name == name(place))?;
+        let (mut definitions, name) = (model.definitions.iter(), name(place));
+        let own = definitions.find(|definition| definition.name == name)?;
         Some(value(&model, own.value, values))
     };
     (0..asked.len())

@@ -5,11 +5,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::graph::{Graph, Joint};
 use super::model_tree::{ModelTree, coordinates, links};
 use super::query::{Values, numbers};
-use super::rewrite::names_in;
 use super::stretch::{levered, lower, upper};
-use crate::front::syntax::{CoordinateKind, Direction, Dotted, Expression, LawStatement, Link};
+use crate::front::syntax::{CoordinateKind, Expression, LawStatement, Link};
 
 /// The words for links, as `role tire` has them.
 pub const OF_LINKS: [&str; 6] = ["tire", "suspension", "mount", "hanger", "pivot_mount", "wheel_bushing"];
@@ -40,32 +40,35 @@ impl Roles {
     /// Determines the roles.
     pub fn of(base: &ModelTree, values: Values) -> Roles {
         let mut roles = Roles::default();
-        let tyre = base.directions().find_map(|direction| {
-            let tyre = links(direction).find(|link| is_tyre(direction, link))?;
-            Some((direction, tyre))
+        let graphs: Vec<Graph> = base.directions().map(|direction| Graph::of(base, direction)).collect();
+        let tyre = graphs.iter().find_map(|graph| {
+            let tyre = graph.joints.iter().find(|joint| joint.is_tyre)?;
+            Some((graph, tyre.link))
         });
         let masses = Masses::of(base, values);
-        if let Some((direction, tyre)) = tyre {
-            let along = direction.name.text.clone();
+        if let Some((graph, tyre)) = tyre {
+            let along = graph.along().to_string();
             let on_tyre = upper(base, &along, tyre).map(|name| base.pointed_at(&along, &name));
             roles.along = Some(along.clone());
-            let carried_by = |mass: &String| reached(base, direction, mass, &|link, _| !carries(link));
-            let resting = on_tyre.as_ref().map_or_else(BTreeSet::new, carried_by);
+            let carried_by = |mass| graph.reached(mass, |joint| carries(joint.link));
+            let resting = on_tyre.as_deref().map_or_else(BTreeSet::new, carried_by);
             let heaviest = masses.heaviest(&along, on_tyre.as_deref(), &|mass| resting.contains(mass));
             let body = heaviest.or_else(|| masses.heaviest(&along, on_tyre.as_deref(), &|_| true));
             roles.body.extend(body.map(|body| (along.clone(), body)));
-            roles.wheel = on_tyre.map(|mass| carried(base, direction, mass, &masses, roles.body.get(&along)));
+            roles.wheel = on_tyre
+                .clone()
+                .map(|mass| carried(graph, mass, &masses, roles.body.get(&along)));
         }
-        for direction in base.directions() {
-            let name = &direction.name.text;
+        for graph in &graphs {
+            let name = graph.along();
             let own = roles.along.as_ref().and_then(|along| roles.body.get(along));
             let same = own.filter(|own| base.coordinate(name, own).is_some()).cloned();
             let body = same.or_else(|| masses.heaviest(name, roles.wheel.as_deref(), &|_| true));
-            roles.body.extend(body.map(|body| (name.clone(), body)));
+            roles.body.extend(body.map(|body| (name.to_string(), body)));
         }
-        roles.pivot = roles.found_pivot(base);
-        for direction in base.directions() {
-            roles.sort_links(base, direction);
+        roles.pivot = roles.found_pivot(base, &graphs);
+        for graph in &graphs {
+            roles.sort_links(base, graph);
         }
         roles
     }
@@ -77,11 +80,10 @@ impl Roles {
             "body" => self.body.get(direction).cloned(),
             "wheel" => self.wheel.as_ref().filter(moves).cloned(),
             "hanger" => {
-                let mut own = links(base.direction(direction)?).filter(|link| {
-                    let held = held(base, direction, link);
-                    held.len() == 2 && held.iter().any(|end| self.hanging.contains(end))
-                });
-                own.next().map(|link| link.name.text.clone())
+                let graph = Graph::of(base, base.direction(direction)?);
+                let hangs = |ends: &BTreeSet<String>| ends.len() == 2 && !ends.is_disjoint(&self.hanging);
+                let own = graph.joints.iter().find(|joint| hangs(&joint.ends))?;
+                Some(own.link.name.text.clone())
             }
             "wheel_bushing" => {
                 let mut own = links(base.direction(direction)?).map(|link| &link.name.text);
@@ -119,54 +121,55 @@ impl Roles {
     }
 
     /// The mass about which levers of the suspension turn, if it is a separate mass.
-    fn found_pivot(&self, base: &ModelTree) -> Option<String> {
+    fn found_pivot(&self, base: &ModelTree, graphs: &[Graph]) -> Option<String> {
         let along = self.along.as_ref()?;
         let (wheel, body) = (self.wheel.as_ref()?, self.body.get(along));
-        let suspending = links(base.direction(along)?).filter(|link| held(base, along, link).contains(wheel));
-        let mut points = suspending.flat_map(|link| levered(base, along, link));
+        let graph = graphs.iter().find(|graph| graph.along() == along)?;
+        let suspending = graph.joints.iter().filter(|joint| joint.ends.contains(wheel));
+        let mut points = suspending.flat_map(|joint| levered(base, along, joint.link));
         points.find(|point| point != wheel && Some(point) != body && is_mass(base, along, point))
     }
 
-    fn sort_links(&mut self, base: &ModelTree, direction: &Direction) {
-        let along = &direction.name.text;
-        for link in links(direction) {
-            let role = match (self.is_own(along), &self.wheel) {
-                (true, _) => self.role_along(base, direction, link),
-                (false, Some(wheel)) => held(base, along, link).contains(wheel).then_some("wheel_bushing"),
+    fn sort_links(&mut self, base: &ModelTree, graph: &Graph) {
+        for joint in &graph.joints {
+            let role = match (self.is_own(graph.along()), &self.wheel) {
+                (true, _) => self.role_along(base, graph, joint),
+                (false, Some(wheel)) => joint.ends.contains(wheel).then_some("wheel_bushing"),
                 (false, None) => None,
             };
             if let Some(role) = role {
-                self.links.insert((along.clone(), link.name.text.clone()), role);
+                let name = (graph.along().to_string(), joint.link.name.text.clone());
+                self.links.insert(name, role);
             }
         }
     }
 
-    fn role_along(&mut self, base: &ModelTree, direction: &Direction, link: &Link) -> Option<&'static str> {
-        let along = &direction.name.text;
-        let Some(wheel) = self.wheel.clone() else {
+    fn role_along(&mut self, base: &ModelTree, graph: &Graph, joint: &Joint) -> Option<&'static str> {
+        let along = graph.along();
+        let Some(wheel) = &self.wheel else {
             return Some("suspension");
         };
-        let body = self.body.get(along)?.clone();
-        let ends = held(base, along, link);
-        if is_tyre(direction, link) {
+        let body = self.body.get(along)?;
+        let ends = &joint.ends;
+        if joint.is_tyre {
             return Some("tire");
         }
-        if ends.contains(&wheel) {
-            let reached = reached(base, direction, &body, &|_, held| held.contains(&wheel));
+        if ends.contains(wheel) {
+            let reached = graph.reached(body, |other| !other.ends.contains(wheel));
             return ends
                 .iter()
-                .any(|end| *end != wheel && reached.contains(end))
+                .any(|end| end != wheel && reached.contains(end.as_str()))
                 .then_some("suspension");
         }
         if ends.len() < 2 {
             return None;
         }
-        let without = reached(base, direction, &body, &|other, _| other.name.text == link.name.text);
-        if let Some(loose) = ends.iter().find(|end| !without.contains(*end)) {
+        let without = graph.reached(body, |other| !std::ptr::eq(other, joint));
+        if let Some(loose) = ends.iter().find(|end| !without.contains(end.as_str())) {
             self.hanging.insert(loose.clone());
             return Some("hanger");
         }
-        let carries = lower(base, along, link).map(|name| base.pointed_at(along, &name)) == self.pivot;
+        let carries = lower(base, along, joint.link).map(|name| base.pointed_at(along, &name)) == self.pivot;
         Some(if carries && self.pivot.is_some() {
             "pivot_mount"
         } else {
@@ -226,19 +229,19 @@ impl Masses {
 }
 
 /// The wheel, given the mass on the tyre: a belt is connected only to one heavier mass, which is then the wheel.
-fn carried(base: &ModelTree, direction: &Direction, mass: String, masses: &Masses, body: Option<&String>) -> String {
-    let along = &direction.name.text;
-    let mut others = BTreeSet::new();
-    for link in links(direction).filter(|link| !is_tyre(direction, link)) {
-        let held = held(base, along, link);
-        if held.contains(&mass) {
-            others.extend(held.into_iter().filter(|end| *end != mass));
-        }
-    }
-    let [only] = others.iter().collect::<Vec<_>>()[..] else {
+fn carried(graph: &Graph, mass: String, masses: &Masses, body: Option<&String>) -> String {
+    let beside = graph
+        .joints
+        .iter()
+        .filter(|joint| !joint.is_tyre && joint.ends.contains(&mass));
+    let others: BTreeSet<&String> = beside
+        .flat_map(|joint| &joint.ends)
+        .filter(|end| **end != mass)
+        .collect();
+    let [only] = others.iter().copied().collect::<Vec<_>>()[..] else {
         return mass;
     };
-    let heavier = masses.weight(along, only) > masses.weight(along, &mass);
+    let heavier = masses.weight(graph.along(), only) > masses.weight(graph.along(), &mass);
     if heavier && Some(only) != body {
         only.clone()
     } else {
@@ -251,65 +254,9 @@ fn is_mass(base: &ModelTree, direction: &str, point: &str) -> bool {
     own.is_some_and(|own| matches!(own.kind, CoordinateKind::Mass(_)))
 }
 
-/// The points that are connected to a point by links, without the links in `but`.
-fn reached(
-    base: &ModelTree,
-    direction: &Direction,
-    from: &str,
-    but: &dyn Fn(&Link, &BTreeSet<String>) -> bool,
-) -> BTreeSet<String> {
-    let along = &direction.name.text;
-    let joined: Vec<BTreeSet<String>> = links(direction)
-        .map(|link| (link, held(base, along, link)))
-        .filter(|(link, held)| !is_tyre(direction, link) && !but(link, held))
-        .map(|(_, held)| held)
-        .collect();
-    let mut found = BTreeSet::from([from.to_string()]);
-    loop {
-        let before = found.len();
-        for held in &joined {
-            if !found.is_disjoint(held) {
-                found.extend(held.iter().cloned());
-            }
-        }
-        if found.len() == before {
-            return found;
-        }
-    }
-}
-
-/// The points of its own direction that a link connects.
-fn held(base: &ModelTree, direction: &str, link: &Link) -> BTreeSet<String> {
-    let mut found = BTreeSet::new();
-    names_in(&link.stretch, &mut |name| {
-        found.extend(own_point(base, direction, name));
-    });
-    found
-}
-
-fn own_point(base: &ModelTree, direction: &str, name: &Dotted) -> Option<String> {
-    let point = match name.names.as_slice() {
-        [point] => point,
-        [home, point] if home.text == direction => point,
-        _ => return None,
-    };
-    let meant = base.pointed_at(direction, &point.text);
-    base.coordinate(direction, &meant).map(|_| meant)
-}
-
 /// True if a link can carry a static load: its law has more than inerters.
 fn carries(link: &Link) -> bool {
     link.body
         .iter()
         .any(|statement| !matches!(statement, LawStatement::Inerter(_) | LawStatement::Active))
-}
-
-fn is_tyre(direction: &Direction, link: &Link) -> bool {
-    let mut found = false;
-    names_in(&link.stretch, &mut |name| {
-        let Some(last) = name.names.last() else { return };
-        let mut roads = coordinates(direction).filter(|own| matches!(own.kind, CoordinateKind::Road));
-        found |= roads.any(|own| own.name.text == last.text);
-    });
-    found
 }

@@ -26,7 +26,7 @@ pub struct Numbers {
     pub further: f64,
 
     /// Accepted probability of a wrong answer: the usual significance level.
-    pub doubt: f64,
+    pub error_probability: f64,
 
     /// Share of the excess residual that a learned law may leave on the held-out runs if it counts as an explanation. A
     /// further effect may leave the same share of what the other effects leave. A choice: beside a first effect, most
@@ -57,14 +57,14 @@ impl Default for Numbers {
             correlation_octaves: 0.7,
             false_alarms: 0.01,
             further: 0.1,
-            doubt: 0.05,
+            error_probability: 0.05,
             left: 0.2,
         }
     }
 }
 
 impl Numbers {
-    /// Names of the assumptions.
+    /// Names of the assumptions, as `qcar discover --assume` has them.
     pub const NAMES: [&str; 7] = [
         "expected_discrepancy",
         "common_to_levels",
@@ -83,7 +83,7 @@ impl Numbers {
             "correlation_octaves" => &mut self.correlation_octaves,
             "false_alarms" => &mut self.false_alarms,
             "further" => &mut self.further,
-            "doubt" => &mut self.doubt,
+            "doubt" => &mut self.error_probability,
             "left" => &mut self.left,
             _ => return None,
         };
@@ -93,12 +93,12 @@ impl Numbers {
 
     /// Smallest probability of a certain answer.
     pub fn certain(&self) -> f64 {
-        1.0 - self.doubt
+        1.0 - self.error_probability
     }
 
     /// Odds of a certain answer.
     pub fn odds_of_certain(&self) -> f64 {
-        self.certain() / self.doubt
+        self.certain() / self.error_probability
     }
 
     /// Share of the excess residual that a learned law or a further effect must explain.

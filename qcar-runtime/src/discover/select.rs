@@ -88,7 +88,7 @@ pub fn discover(
         }
     }
     let (discovery, found) = search(base, evidence, progress);
-    // Beside a large missing effect the noise is not seen, so the answer is asked again.
+    // A large missing effect hides the noise of the inputs, so it is tested again with the answer.
     let quieter = quieter.filter(|quieter| {
         let again = found.again(&quieter.evidence);
         again.is_some_and(|log_evidence| is_more_probable(log_evidence, &found, evidence))
@@ -106,7 +106,7 @@ pub fn discover(
     Ok(discovery)
 }
 
-/// True if other data of the same responses make them more probable by the odds of a certain answer.
+/// True if the same responses are more probable with the other data, by the odds of a certain answer.
 fn is_more_probable(log_evidence: f64, than: &Set, evidence: &Evidence) -> bool {
     log_evidence - than.explanation.refit.log_evidence > evidence.numbers.odds_of_certain().ln()
 }
@@ -227,11 +227,15 @@ impl Discovery {
 /// contain the best single effect.
 const BEAM: usize = 2;
 
-/// The set to extend next; `None` if no extension is worth trying. This is the most probable set; then the base model
-/// with the nuisance effects that the data show, if the most probable set leaves a significant part; then the next
-/// one-effect set of the beam, if something is still missing, or if more than noise is left and that set explains most
-/// of the excess residual too. A third effect is tried only if the first two explain most of the excess residual; if
-/// they do not, the catalogue has no answer.
+/// The set to extend next; `None` if no extension is worth trying. In this order:
+///
+/// 1. the most probable set;
+/// 2. the base model with the nuisance effects that the data show, if the most probable set leaves a significant part;
+/// 3. the next one-effect set of the beam, if something is still missing, or if more than noise is left and that set
+///    explains most of the excess residual too.
+///
+/// A third effect is tried only if the first two explain most of the excess residual. Otherwise the catalogue has no
+/// answer.
 fn next(sets: &[Set], evidence: &Evidence) -> Option<usize> {
     let best = best(sets);
     let explained = || explained_share(&sets[best_base(sets)], &sets[best], evidence);

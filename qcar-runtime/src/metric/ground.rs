@@ -9,7 +9,7 @@ use super::course::Course;
 use super::name::{Measure, Metric, What, metrics};
 use super::record::{FilteredRecord, Impact};
 use super::travel::WithTravel;
-use super::vibration;
+use super::vibration::Vibrations;
 use crate::campaign::RoleNames;
 use crate::model::{About, Model, Quantity, Signal, SignalKind};
 use crate::response::parameters::Values;
@@ -95,7 +95,7 @@ impl<'a> Ground<'a> {
         courses: Vec<Course>,
     ) -> Self {
         let model = WithTravel::new(model, names);
-        let vibrations = vibration::of(&model, values.as_slice(), &[]).len();
+        let vibrations = Vibrations::of(&model, values.as_slice(), &[]).count();
         let mut metrics = metrics(model.about(), vibrations);
         metrics.retain(|metric| tyre.is_some() || !metric.what.is_ridden());
         let wheel = Roles::of(model.about(), names)
@@ -252,7 +252,7 @@ impl<'a> Ground<'a> {
                     let slope = |slopes: &Vec<Vec<f64>>| seen.slope(&slopes[signal], &signals.impact);
                     (seen.value(), signals.slopes.iter().map(slope).collect())
                 }
-                _ => at_rest.find(self, values, &self.metrics[reading.metric], directions)?,
+                _ => at_rest.find(self, values, &self.metrics[reading.metric])?,
             };
             found.values.push(value);
             found.slopes.push(slopes);
@@ -407,37 +407,34 @@ struct Signals {
 }
 
 /// Readings that need no ride.
-struct AtRest {
-    vibrations: Vec<vibration::Vibration>,
+struct AtRest<'d> {
+    directions: &'d [Vec<f64>],
+    /// `None` if no reading is that of a mode.
+    vibrations: Option<Vibrations<'d>>,
 }
 
-impl AtRest {
-    fn new(ground: &Ground<'_>, values: &Values, directions: &[Vec<f64>]) -> Self {
-        let wanted = |reading: &Reading| {
+impl<'d> AtRest<'d> {
+    fn new(ground: &Ground<'_>, values: &Values, directions: &'d [Vec<f64>]) -> Self {
+        let of_mode = |reading: &Reading| {
             let what = ground.metrics[reading.metric].what;
             matches!(what, What::Frequency(_) | What::Damping(_))
         };
-        let vibrations = if ground.readings.iter().any(wanted) {
-            vibration::of(&ground.model, values.as_slice(), directions)
-        } else {
-            Vec::new()
-        };
-        Self { vibrations }
+        let wanted = ground.readings.iter().any(of_mode);
+        Self {
+            directions,
+            vibrations: wanted.then(|| Vibrations::of(&ground.model, values.as_slice(), directions)),
+        }
     }
 
-    fn find(
-        &self,
-        ground: &Ground<'_>,
-        values: &Values,
-        metric: &Metric,
-        directions: &[Vec<f64>],
-    ) -> Result<(f64, Vec<f64>), MetricError> {
+    fn find(&self, ground: &Ground<'_>, values: &Values, metric: &Metric) -> Result<(f64, Vec<f64>), MetricError> {
+        let directions = self.directions;
         let vibration = |place: usize, which: usize| {
-            let own = self.vibrations.get(place).ok_or_else(|| MetricError::NoVibration {
+            let own = self.vibrations.as_ref().and_then(|all| all.mode(place));
+            let (value, slopes) = own.ok_or_else(|| MetricError::NoVibration {
                 metric: metric.name.clone(),
-                found: self.vibrations.len(),
+                found: self.vibrations.as_ref().map_or(0, Vibrations::count),
             })?;
-            Ok((own.value[which], own.slopes.iter().map(|slope| slope[which]).collect()))
+            Ok((value[which], slopes.iter().map(|slope| slope[which]).collect()))
         };
         let resonance = |channel: usize, which: usize| {
             let channel = &ground.about().channels[channel];

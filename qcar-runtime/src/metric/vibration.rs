@@ -1,35 +1,102 @@
 //! Natural frequencies and damping ratios, with their derivatives.
 
-use nalgebra::{Complex, DMatrix};
+use std::cell::OnceCell;
 use std::f64::consts::TAU;
+
+use nalgebra::Complex;
 
 use crate::matrices::sensitivities_at_rest;
 use crate::model::{Matrix, Model};
 use crate::modes::{Eigenvectors, dynamics, vibrations};
 
-/// A mode: its `[frequency in Hz, damping ratio]`, and the derivatives of both along each direction.
-pub(super) struct Vibration {
-    pub value: [f64; 2],
-    pub slopes: Vec<[f64; 2]>,
+/// The modes of a model, lowest frequency first, with derivatives along directions of the parameters.
+pub(super) struct Vibrations<'d> {
+    modes: Vec<Vibration>,
+    directions: &'d [Vec<f64>],
+    /// `None` without directions.
+    gradient: Option<Gradient>,
 }
 
-/// The modes of a model, lowest frequency first, with their derivatives along directions of the parameters.
-///
-/// An eigenvalue moves by `wᵀ dA v / wᵀ v`, with its right and left vectors (Fox and Kapoor, AIAA J. 6, 1968).
-pub(super) fn of(model: &dyn Model, p: &[f64], directions: &[Vec<f64>]) -> Vec<Vibration> {
-    let a = dynamics(model, p);
-    let moved: Vec<DMatrix<f64>> = directions.iter().map(|direction| change(model, p, direction)).collect();
-    let sides = (!moved.is_empty()).then(|| [&a, &a.transpose()].map(Eigenvectors::of));
-    let vibration = |root: Complex<f64>| Vibration {
-        value: [root.norm() / TAU, -root.re / root.norm()],
-        slopes: sides.as_ref().map_or_else(Vec::new, |sides| {
-            let [right, left] = sides.each_ref().map(|side| side.nearest(root));
-            let scale = left.dot(&right);
-            let by = |da: &DMatrix<f64>| slope(root, left.dot(&(da.map(Complex::from) * &right)) / scale);
-            moved.iter().map(by).collect()
-        }),
-    };
-    vibrations(&a).into_iter().map(vibration).collect()
+struct Vibration {
+    root: Complex<f64>,
+    /// Derivatives of frequency and damping ratio along each direction, once they have been asked for.
+    slopes: OnceCell<Vec<[f64; 2]>>,
+}
+
+impl<'d> Vibrations<'d> {
+    pub fn of(model: &dyn Model, p: &[f64], directions: &'d [Vec<f64>]) -> Self {
+        let a = dynamics(model, p);
+        let vibration = |root| Vibration {
+            root,
+            slopes: OnceCell::new(),
+        };
+        Self {
+            modes: vibrations(&a).into_iter().map(vibration).collect(),
+            directions,
+            gradient: (!directions.is_empty()).then(|| Gradient {
+                sides: [&a, &a.transpose()].map(Eigenvectors::of),
+                parameters: p.len(),
+                nonzeros: nonzeros(model, p),
+            }),
+        }
+    }
+
+    pub fn count(&self) -> usize {
+        self.modes.len()
+    }
+
+    /// Natural frequency in Hz and damping ratio of a mode, and the derivatives of both along each direction; `None` if
+    /// the model has fewer modes.
+    pub fn mode(&self, place: usize) -> Option<([f64; 2], &[[f64; 2]])> {
+        let own = self.modes.get(place)?;
+        let value = [own.root.norm() / TAU, -own.root.re / own.root.norm()];
+        Some((value, own.slopes.get_or_init(|| self.slopes(own.root))))
+    }
+
+    fn slopes(&self, root: Complex<f64>) -> Vec<[f64; 2]> {
+        let Some(gradient) = &self.gradient else {
+            return Vec::new();
+        };
+        let by_parameter = gradient.of(root);
+        let along = |direction: &Vec<f64>| {
+            let parts = by_parameter.iter().zip(direction);
+            slope(root, parts.map(|(moved, by)| moved * by).sum())
+        };
+        self.directions.iter().map(along).collect()
+    }
+}
+
+/// What the derivatives of the eigenvalues of A at rest need.
+struct Gradient {
+    /// Eigenvectors of A and of its transpose.
+    sides: [Eigenvectors; 2],
+    /// Number of parameters.
+    parameters: usize,
+    /// Row, column and parameter of each nonzero of `∂A/∂p`, with its value.
+    nonzeros: Vec<([usize; 3], f64)>,
+}
+
+impl Gradient {
+    /// The derivative of an eigenvalue by each parameter.
+    ///
+    /// It is `wᵀ ∂A/∂p v / wᵀ v`, with its right and left vectors (Fox and Kapoor, AIAA J. 6, 1968).
+    fn of(&self, root: Complex<f64>) -> Vec<Complex<f64>> {
+        let [right, left] = self.sides.each_ref().map(|side| side.nearest(root));
+        let scale = left.dot(&right);
+        let mut gradient = vec![Complex::ZERO; self.parameters];
+        for &([row, column, parameter], value) in &self.nonzeros {
+            gradient[parameter] += left[row] * right[column] * value / scale;
+        }
+        gradient
+    }
+}
+
+fn nonzeros(model: &dyn Model, p: &[f64]) -> Vec<([usize; 3], f64)> {
+    let all = model.about().sensitivities.iter().zip(sensitivities_at_rest(model, p));
+    let of_dynamics = all.filter(|((entry, _), _)| entry.matrix == Matrix::A);
+    of_dynamics
+        .map(|((entry, parameter), value)| ([entry.row, entry.column, *parameter].map(usize::from), value))
+        .collect()
 }
 
 /// Derivatives of frequency and damping ratio, given that of the eigenvalue.
@@ -37,17 +104,4 @@ fn slope(root: Complex<f64>, moved: Complex<f64>) -> [f64; 2] {
     let size = root.norm();
     let grown = (root.conj() * moved).re / size;
     [grown / TAU, (-moved.re + root.re * grown / size) / size]
-}
-
-/// The derivative of A at rest along a direction.
-fn change(model: &dyn Model, p: &[f64], direction: &[f64]) -> DMatrix<f64> {
-    let about = model.about();
-    let nonzeros = sensitivities_at_rest(model, p);
-    let mut change = DMatrix::zeros(about.states.len(), about.states.len());
-    for ((entry, parameter), &value) in about.sensitivities.iter().zip(&nonzeros) {
-        if entry.matrix == Matrix::A {
-            change[(usize::from(entry.row), usize::from(entry.column))] += value * direction[usize::from(*parameter)];
-        }
-    }
-    change
 }

@@ -14,8 +14,8 @@ pub struct Shape {
 pub enum Form {
     /// Log gain, the same at all frequencies.
     Gain,
-    /// Log gain that rises by 1 about a corner frequency, with the phase that belongs to it. They are spread evenly
-    /// over the band in log frequency, counted from 0.
+    /// Shelf of this number, from 0: a log gain that rises by 1 about a corner frequency, with its minimum phase. The
+    /// corner frequencies are evenly spaced over the band in log frequency.
     Shelf(usize),
     /// Phase, rad, the same at all frequencies.
     Phase,
@@ -56,14 +56,14 @@ impl AccuracyClass {
         self.shelf() * (SHELVES as f64).sqrt()
     }
 
-    /// Negative log prior of the class, up to a constant: exponential in the error beyond the data sheets, whose mean
-    /// is the error of the data sheets.
+    /// Negative log prior of the class, up to a constant. The prior is exponential in the error beyond that of the data
+    /// sheets, with the latter as its mean.
     pub fn cost(self) -> f64 {
         self.shelf() / CALIBRATED - 1.0
     }
 }
 
-/// Priors of a sensor beside its calibration curve: 0.7 % of gain; 0.2° of phase; 50 µs of delay; an offset in time
+/// Priors of a sensor in addition to its calibration curve: 0.7 % of gain; 0.2° of phase; 50 µs of delay; an offset in time
 /// histories of a tenth of the reading.
 ///
 /// Thesis section 3.4 uses capacitive accelerometers. Their data sheets give 0.5 to 1 % of gain and the phase of a

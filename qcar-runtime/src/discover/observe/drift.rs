@@ -1,6 +1,6 @@
-//! Runs with a slowly changing parameter, such as a fading damper. The model is evaluated at several times with the
-//! parameter fixed at its value then, and each value is interpolated between the two nearest times. A change within one
-//! oscillation needs a state in the model instead.
+//! Runs with a slowly changing parameter, such as a fading damper. The model is evaluated for several times of the run,
+//! each with the parameter fixed at its value at that time. Predictions between these times are interpolated. A
+//! parameter that changes within one oscillation needs a state in the model instead.
 
 use nalgebra::Complex;
 

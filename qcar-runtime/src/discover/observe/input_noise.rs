@@ -1,8 +1,8 @@
 //! Removes the noise of recorded inputs where it hides the excitation.
 //!
-//! A model responds to the noise of a recorded input as to an excitation, while the machine did not. At frequencies at
-//! which the input is hardly more than noise, the model then predicts a response that was not measured, and anything
-//! that filters the input looks like a missing effect. The Wiener filter weights each frequency by the share of its
+//! A simulation takes the noise of a recorded input for excitation, to which the machine never responded. At frequencies
+//! where the input is mostly noise, the model then predicts a response that was not measured, and any effect that
+//! filters the input seems to be missing. The Wiener filter weights each frequency by the share of its
 //! power that is not noise (Wiener, N.: Extrapolation, interpolation, and smoothing of stationary time series, 1949).
 //! It is the best estimate of the true input.
 
@@ -38,7 +38,7 @@ pub struct Quieter {
 
 impl Quieter {
     /// The data with the noise of all recorded inputs removed; `None` if it is below that of a 12-bit converter
-    /// everywhere. Whether it is noise, only the responses tell: an input may also be as wide as white noise.
+    /// everywhere. Only the responses can show whether it is noise, since an excitation may be white as well.
     pub fn of(evidence: &Evidence) -> Option<Self> {
         let (mut quieter, mut drawn) = (evidence.clone(), evidence.clone());
         let mut random = SplitMix::new(SEED);
@@ -108,8 +108,8 @@ fn without_noise(samples: &[f64], periodic: bool, random: &mut SplitMix) -> [Vec
     if periodic {
         return filtered(samples, noise, random);
     }
-    // The filter takes its input for one period. Without the line through its ends, and continued by its mirror image
-    // with the opposite sign, the signal has no jump and no kink there.
+    // The filter treats its input as one period. The line through both ends is removed and the signal is continued as
+    // an odd function, so that it has no jump and no kink there.
     let last = samples.len() - 1;
     let line = |k: usize| samples[0] + (samples[last] - samples[0]) * k as f64 / last as f64;
     let moving: Vec<f64> = (0..=last).map(|k| samples[k] - line(k)).collect();
@@ -121,7 +121,7 @@ fn without_noise(samples: &[f64], periodic: bool, random: &mut SplitMix) -> [Vec
 }
 
 /// One period of a signal through the Wiener filter for white noise of this standard deviation, and a draw of the noise
-/// that is left: that part of the white noise has the share of the signal as its share of the power.
+/// that the filter leaves. At each frequency, the share of the noise power that is left equals the share of the signal.
 fn filtered(period: &[f64], noise: f64, random: &mut SplitMix) -> [Vec<f64>; 2] {
     let mut lines = transform(period);
     let noise = noise.powi(2) * period.len() as f64;

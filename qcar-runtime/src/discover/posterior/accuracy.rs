@@ -1,7 +1,7 @@
 //! Accuracy class of the sensors' calibration curves, estimated from the data.
 //!
-//! A campaign may be measured with worse sensors than those of the data sheets. One class for all of them tells how
-//! much worse. It is the class that makes the data most probable, with the shelves of the curves and all other unknowns
+//! The sensors of a campaign may be less accurate than the data sheets say. All have one accuracy class: the one with
+//! the largest evidence, that is, the probability of the data with the shelves of the curves and all other unknowns
 //! integrated out (the evidence framework of MacKay, Neural Computation 4, 1992).
 
 use nalgebra::{Cholesky, DMatrix, DVector};
@@ -26,7 +26,7 @@ impl Posterior<'_> {
     }
 }
 
-/// What the data tell about the shelves with all other unknowns integrated out, in independent directions.
+/// Likelihood of the shelves, with all other unknowns integrated out, along the eigenvectors of its information matrix.
 struct Marginal {
     /// Information of the data on each direction.
     information: DVector<f64>,
@@ -94,7 +94,7 @@ mod tests {
         Marginal { information, slope }
     }
 
-    /// The most probable variance of values that are known is their mean square.
+    /// The most probable variance of exactly known values is their mean square.
     #[test]
     fn the_class_of_known_shelves_is_their_size() {
         for class in AccuracyClass::all() {
@@ -103,7 +103,7 @@ mod tests {
         }
     }
 
-    /// What noise makes of shelves that nothing determines is no sign of inaccurate sensors.
+    /// Shelves that differ from zero by no more than their standard error do not show inaccurate sensors.
     #[test]
     fn shelves_within_their_noise_leave_the_class_of_the_data_sheets() {
         assert_eq!(shelves(0.05, 0.05).most_probable_class(), AccuracyClass::default());

@@ -8,7 +8,7 @@ use crate::model::Model;
 
 /// Rounds of a refit with the non-steady part of the sweeps; the second recomputes it at the result of the first.
 const ROUNDS: usize = 2;
-/// Most evaluations of a round. It starts near its optimum; a fit that needs more explains the data badly anyway.
+/// Most evaluations of a round. It starts near its optimum; a model that needs more explains the data badly.
 const EVALUATIONS: usize = 20;
 
 /// Refits with the non-steady part of the sweeps, which a search leaves out: see [`unsteady`]. Without fitted sweeps

@@ -70,7 +70,7 @@ fn represented_by(place: usize, sets: &[Set], supported: &[usize]) -> usize {
 
 /// The credible set: the most probable names that together reach the required probability, without names that only add
 /// effects to another member. It is the base model alone if the most probable names are dismissed, or if the
-/// probability of the base model exceeds the accepted doubt.
+/// probability of the base model exceeds the accepted probability of error.
 pub fn credible(sets: &[Set], answers: &[Answer], numbers: &Numbers) -> Vec<usize> {
     let is_named = |own: &&Answer| !sets[own.set].names().is_empty();
     let none: f64 = answers
@@ -78,7 +78,7 @@ pub fn credible(sets: &[Set], answers: &[Answer], numbers: &Numbers) -> Vec<usiz
         .filter(|own| !is_named(own))
         .map(|own| own.probability)
         .sum();
-    if answers[0].dismissed || none > numbers.doubt {
+    if answers[0].dismissed || none > numbers.error_probability {
         return vec![best_base(sets)];
     }
     let possible = answers.iter().filter(|own| is_named(own) && !own.dismissed);

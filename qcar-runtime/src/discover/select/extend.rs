@@ -53,7 +53,7 @@ pub fn extensions(set: &Set, lead: f64, evidence: &Evidence, progress: Progress<
 /// True if `after` explains nearly all of the excess residual that `before` leaves in the fitted runs.
 pub fn explains_fitted(before: &Set, after: &Set, evidence: &Evidence) -> bool {
     let [before, after] = [before, after].map(|set| (set.explanation.misfit.fit.powi(2) - 1.0).max(0.0));
-    after <= evidence.numbers.doubt * before
+    after <= evidence.numbers.error_probability * before
 }
 
 /// Data of a search that starts from a set, and the fit of the set to the coarse part.

@@ -147,11 +147,11 @@ pub fn race(
     (finalists.collect(), dropped)
 }
 
-/// Candidates for the first round, among the effects that gain at a place in some form: the ones with the largest gain,
-/// the best of each place, and the best of each form of each effect. The screening shows that something is missing, the
-/// fits show what: the parameters of a model without an effect may have to change much before the effect gains much.
-/// Nuisance effects enter at every place, without a gain: every real axle has them, and what they explain must not be
-/// given to another effect.
+/// Candidates for the first round: those with the largest gains, the best of each place, and the best of each form of
+/// each effect. Only effects that gain at a place in some form enter. Rank alone does not decide, because the model's
+/// parameters may have to change much before the right effect gains much: the screening shows that something is missing,
+/// the fits show what. Nuisance effects enter at every place even without a gain: every real axle has them, and another
+/// effect must not explain their part of the residual.
 pub fn entrants<'p>(candidates: &[Candidate], screened: &'p [Screened]) -> Vec<&'p Screened> {
     let effect = |entry: &Screened| {
         let own = &candidates[entry.candidate];
@@ -269,8 +269,9 @@ mod tests {
         }
     }
 
-    /// Friction has a small gain and ranks behind all direct entrants; one of its forms has none, and neither have the
-    /// stop and the nuisance, which enters at its second place too.
+    /// The friction ranks behind all that enter by their gain, and enters as the best of its form, `with_memory` even
+    /// without a gain. The stop has no gain and stays out. The bending has none either, but it is a nuisance effect and
+    /// enters at both places.
     #[test]
     fn each_form_each_place_and_each_nuisance_enters() {
         let law = |k: usize| (candidate(&format!("law {k}"), "damper"), 100.0 - k as f64);

@@ -119,7 +119,7 @@ impl Set {
         self.explanation.refit.log_evidence + self.log_prior
     }
 
-    /// Prior odds of one more effect: even for the first.
+    /// Prior odds of one more effect; even odds for the first.
     pub fn odds_of_another(&self, numbers: &Numbers) -> f64 {
         if self.names().is_empty() { 1.0 } else { numbers.further }
     }
@@ -145,10 +145,11 @@ impl Set {
             .any(|own| own.unknowns.has_magnitude_at_bound(&self.explanation))
     }
 
-    /// True if an effect that `part` lacks has a magnitude at its bound: it then imitates another effect. At the bound of
-    /// a shape parameter an effect can imitate almost any other. So these must be inside their ranges too if `part` has
-    /// effects, since little residual is left for further ones; and if the effect has taken the place of a parameter of
-    /// the model, which it sends to its bound, and still leaves more than noise.
+    /// True if an effect that `part` lacks has a magnitude at its bound: it then imitates another effect.
+    ///
+    /// With a shape parameter at its bound, an effect can imitate almost any other. This counts too if `part` already
+    /// has effects, since they leave little residual for a further one. It also counts if the effect replaces a
+    /// parameter of the model, which is then at its bound, and more than noise is left.
     pub fn adds_effect_at_bound(&self, part: &Set, evidence: &Evidence) -> bool {
         let replaces_parameter = || leaves_more_than_noise(self, evidence) && self.sends_parameter_to_bound(part);
         let has_other_causes = !part.names().is_empty() || replaces_parameter();

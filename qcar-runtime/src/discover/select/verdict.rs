@@ -17,24 +17,13 @@ pub fn conclude(sets: &[Set], evidence: &Evidence) -> (Discovery, usize) {
     let explains = |set: usize| explained_share(before, &sets[set], evidence) >= GREATER_PART;
     let members = if explains(credible[0]) { credible } else { vec![base] };
     let best = members[0];
-    let after = sets[best].explanation.clone();
-    let finding = |set: &Set, own: &Placed| Finding {
-        effect: own.effect.clone(),
-        at: own.at.clone(),
-        form: own.form.clone(),
-        parameters: own.unknowns.parameters(&set.explanation),
-        evidence: set.explanation.refit.log_evidence - before.explanation.refit.log_evidence,
-        explained: explained_share(before, set, evidence),
-        rivals: set.rivals.clone(),
-    };
+    let finding = |set: &Set, own: &Placed| finding(set, own, before, evidence);
     let (findings, alternatives) = findings(&members.iter().map(|&place| &sets[place]).collect::<Vec<_>>(), &finding);
-    let sum = |wanted: &dyn Fn(&Answer) -> bool| -> f64 {
-        let wanted = answers.iter().filter(|own| wanted(own));
-        wanted.map(|own| own.probability).sum()
-    };
-    let of_none = sum(&|own| sets[own.set].names().is_empty());
+    let of_none = total(&answers, |own| sets[own.set].names().is_empty());
     let verdict = match (findings.is_empty(), alternatives) {
-        (true, _) if is_missing(&sets[best], evidence) || of_none < evidence.numbers.doubt => Verdict::Unknown,
+        (true, _) if is_missing(&sets[best], evidence) || of_none < evidence.numbers.error_probability => {
+            Verdict::Unknown
+        }
         (true, _) => Verdict::None,
         (false, 0) => Verdict::Found,
         (false, _) => Verdict::Class,
@@ -43,7 +32,9 @@ pub fn conclude(sets: &[Set], evidence: &Evidence) -> (Discovery, usize) {
     let probability = match verdict {
         Verdict::None => Some(of_none),
         // Probability on the condition that one of the answers that are not dismissed is true.
-        Verdict::Found | Verdict::Class => Some(sum(&|own| !own.dismissed && holds(own)) / sum(&|own| !own.dismissed)),
+        Verdict::Found | Verdict::Class => {
+            Some(total(&answers, |own| !own.dismissed && holds(own)) / total(&answers, |own| !own.dismissed))
+        }
         Verdict::Unknown => None,
     };
     let nuisances = |set: &Set| {
@@ -58,11 +49,30 @@ pub fn conclude(sets: &[Set], evidence: &Evidence) -> (Discovery, usize) {
         findings,
         alternatives,
         before: before.with_sensors_of(&sets[best], evidence).into_owned(),
-        after,
+        after: sets[best].explanation.clone(),
         detection_limits: Vec::new(),
         learned: None,
     };
     (discovery, best)
+}
+
+/// An effect of a set as a finding, compared with the base model.
+fn finding(set: &Set, own: &Placed, base: &Set, evidence: &Evidence) -> Finding {
+    Finding {
+        effect: own.effect.clone(),
+        at: own.at.clone(),
+        form: own.form.clone(),
+        parameters: own.unknowns.parameters(&set.explanation),
+        evidence: set.explanation.refit.log_evidence - base.explanation.refit.log_evidence,
+        explained: explained_share(base, set, evidence),
+        rivals: set.rivals.clone(),
+    }
+}
+
+/// Sum of the probabilities of the wanted answers.
+fn total(answers: &[Answer], wanted: impl Fn(&Answer) -> bool) -> f64 {
+    let wanted = answers.iter().filter(|own| wanted(own));
+    wanted.map(|own| own.probability).sum()
 }
 
 /// Findings of the members, those common to all first, and the number of alternative findings at the end.

@@ -13,7 +13,7 @@ function summary(data) {
     ['value', 'number'],
     ...(isUncertain ? [['95 % interval', 'text']] : []),
     ...(parameters.length ? [['moved most by', 'text']] : []),
-    ['meaning', 'sentence'],
+    ['meaning', 'text'],
   ];
   const strongest = (own) =>
     largest(Object.entries(own.elasticities), 2)

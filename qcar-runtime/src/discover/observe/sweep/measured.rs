@@ -1,6 +1,6 @@
 //! Reads a sweep: the first three harmonics of every sensor over the amplitude of the pad.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use nalgebra::Complex;
@@ -50,14 +50,7 @@ impl Evidence {
         let (pads, others): (Vec<_>, Vec<_>) = sensors(about, &history)
             .into_iter()
             .partition(|point| is_motion(about, point));
-        let is_one = |pads: &[Point]| {
-            pads.iter()
-                .all(|pad| (&pad.location, pad.axis) == (&pads[0].location, pads[0].axis))
-        };
-        let reference = match &pads[..] {
-            [reference, ..] if is_one(&pads) => reference.clone(),
-            _ => return Err(not_one_pad(about, &pads, history.file).into()),
-        };
+        let reference = only_pad(about, &pads, &history.file)?;
         let sensors = self.keep_known(about, &run.name, others);
         if sensors.is_empty() {
             self.notices
@@ -74,20 +67,13 @@ impl Evidence {
         let (place, before) = (self.runs.len(), self.series.len());
         for sensor in sensors {
             let samples = signal(&history, &sensor)?;
-            let respond = |order: usize| {
+            let harmonics = (1..=ORDERS).map(|order| {
                 let at: Vec<f64> = usable(&frequency, order, rate);
                 let response: Vec<f64> = at.iter().map(|f| f * order as f64).collect();
-                (at, swept.responses(&samples, &response, AROUND))
-            };
-            let first = series(place, &sensor, 1, respond(1));
-            if !is_above_noise(&first) {
-                let said = format!("`{}` shows nothing but noise", sensor.location);
-                self.notices
-                    .push(format!("{}: {said}; that sensor is left out", run.name));
-                continue;
-            }
-            let others = (2..=ORDERS).map(|order| series(place, &sensor, order, respond(order)));
-            self.series.extend(std::iter::once(first).chain(others));
+                let lines = swept.responses(&samples, &response, AROUND);
+                series(place, &sensor, order, (at, lines))
+            });
+            self.add_harmonics(&run.name, &sensor.location, harmonics);
         }
         if self.series.len() == before {
             return Ok(());
@@ -109,9 +95,30 @@ impl Evidence {
         });
         Ok(())
     }
+
+    /// Adds the harmonics of a sensor, the first one first, or a notice if that shows nothing but noise.
+    fn add_harmonics(&mut self, run: &str, location: &str, mut harmonics: impl Iterator<Item = Series>) {
+        match harmonics.next().filter(is_above_noise) {
+            Some(first) => self.series.extend(std::iter::once(first).chain(harmonics)),
+            None => self.notices.push(format!(
+                "{run}: `{location}` shows nothing but noise; that sensor is left out"
+            )),
+        }
+    }
 }
 
-/// Problem of a sweep whose sensors measure none or several of the motions that drive the model.
+/// The sensor of the motion that drives the model in a sweep.
+///
+/// # Errors
+/// Fails if the sensors measure none or several of these motions.
+fn only_pad(about: &About, pads: &[Point], file: &Path) -> Result<Point, InputError> {
+    let place = |pad: &Point| (pad.location.clone(), pad.axis);
+    match pads {
+        [reference, others @ ..] if others.iter().all(|pad| place(pad) == place(reference)) => Ok(reference.clone()),
+        _ => Err(not_one_pad(about, pads, file.to_path_buf()).into()),
+    }
+}
+
 fn not_one_pad(about: &About, pads: &[Point], file: PathBuf) -> Problem {
     let (place, name) = (Place::Line(1), |point: &Point| point.to_string());
     if pads.is_empty() {
