@@ -39,3 +39,18 @@ impl DerefMut for Rows {
         self.numbers[self.first..].as_chunks_mut().0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_begin_at_cache_lines() {
+        for count in [0, 1, 20, 333] {
+            let mut rows = Rows::zero(count);
+            rows.iter_mut().for_each(|row| row.fill(1.0));
+            assert_eq!(*rows, vec![[1.0; LANES]; count]);
+            assert!(rows.as_ptr().addr().is_multiple_of(LINE), "{count} rows");
+        }
+    }
+}
