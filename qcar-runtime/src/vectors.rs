@@ -4,6 +4,8 @@
 mod number;
 // The results of a response.
 mod lines;
+// Rows of lanes.
+mod rows;
 // Four numbers, on any processor.
 #[cfg(any(test, not(target_arch = "x86_64")))]
 mod portable;
@@ -15,6 +17,7 @@ pub use lines::LinesMut;
 pub use number::{sign, table};
 #[cfg(not(target_arch = "x86_64"))]
 pub use portable::{Four, Four as Eight};
+pub(crate) use rows::Rows;
 #[cfg(target_arch = "x86_64")]
 pub use x86::{Eight, Four};
 

@@ -9,7 +9,7 @@ use super::rolling::{Rolling, WheelStates};
 use crate::model::{Contact, Contacts, LANES, Lanes, Model};
 use crate::solver::ExponentialAbreast;
 use crate::tyre::{Pieces, Tyre, Wheels};
-use crate::vectors::{Loops, over_lanes};
+use crate::vectors::{Loops, Rows, over_lanes};
 
 const NOTHING: Lanes = [0.0; LANES];
 
@@ -21,8 +21,8 @@ pub(super) struct Batch<'a, M: ?Sized> {
     relative: f64,
     /// End of the step of each lane, s.
     times: Lanes,
-    constants: Vec<Lanes>,
-    inputs: Vec<Lanes>,
+    constants: Rows,
+    inputs: Rows,
     /// Speeds, m/s.
     speeds: Lanes,
     /// Heights of the wheels' centres in the design position, m.
@@ -39,7 +39,7 @@ pub(super) struct Batch<'a, M: ?Sized> {
     contacts: Contacts,
     /// Contact forces with the other forces on the wheels added.
     driven: Contacts,
-    rates: Vec<Lanes>,
+    rates: Rows,
     /// Buffer for the state of one lane.
     state: Vec<f64>,
 }
@@ -56,8 +56,8 @@ impl<'a, M: Model + ?Sized> Batch<'a, M> {
             method: ExponentialAbreast::like(stepper.method(), &absolute),
             relative,
             times: NOTHING,
-            constants: vec![NOTHING; rolling.constants.len()],
-            inputs: vec![NOTHING; rolling.inputs.len()],
+            constants: Rows::zero(rolling.constants.len()),
+            inputs: Rows::zero(rolling.inputs.len()),
             speeds: NOTHING,
             heights: NOTHING,
             offsets: [NOTHING; 2],
@@ -68,7 +68,7 @@ impl<'a, M: Model + ?Sized> Batch<'a, M> {
             found: [false; LANES],
             contacts: Contacts::default(),
             driven: Contacts::default(),
-            rates: vec![NOTHING; states],
+            rates: Rows::zero(states),
             state: vec![0.0; states],
         }
     }

@@ -67,8 +67,8 @@ impl Pieces {
     #[inline(always)]
     fn segment(&self, lane: usize) -> Segment {
         Segment {
-            origin: self.origin.map(|of| of[lane]),
-            along: self.along.map(|of| of[lane]),
+            origin: at(&self.origin, lane),
+            along: at(&self.along, lane),
             start: self.start[lane],
             end: self.end[lane],
         }
@@ -232,7 +232,9 @@ impl Touches {
     pub fn pushing(&self, resisting: &[Lanes; 3]) -> Contacts {
         let mut contacts = Contacts::default();
         for lane in 0..LANES {
-            let own = self.get(lane).pushing(resisting.map(|force| force[lane]));
+            let own = self
+                .get(lane)
+                .pushing([resisting[0][lane], resisting[1][lane], resisting[2][lane]]);
             contacts.set(lane, &own);
         }
         contacts

@@ -7,23 +7,24 @@ use std::array;
 use super::{ExponentialAdams, KEPT};
 use crate::model::{LANES, Lanes};
 use crate::solver::polynomial::{EXTRAPOLATION, PAST};
+use crate::vectors::Rows;
 
 /// Integrator of systems whose matrices have the same sparsity.
 pub struct ExponentialAbreast<const F: usize> {
     parts: Vec<Part>,
     /// For each force the correction of each state, and its part that is the estimated error.
-    whole: [Vec<Lanes>; F],
-    last_order: [Vec<Lanes>; F],
-    state: Vec<Lanes>,
+    whole: [Rows; F],
+    last_order: [Rows; F],
+    state: Rows,
     /// The states one step before, and true if that step was accepted.
-    before: Vec<Lanes>,
+    before: Rows,
     stands: [bool; LANES],
-    ahead: Vec<Lanes>,
+    ahead: Rows,
     /// For each state its absolute tolerance and the excess of its error; for each force the error of its prediction.
     /// They are stored so that loops run over all lanes of all states.
-    absolute: Vec<Lanes>,
-    excess: Vec<Lanes>,
-    off: [Vec<Lanes>; F],
+    absolute: Rows,
+    excess: Rows,
+    off: [Rows; F],
     /// Past values of each force, the last first.
     past: [[Lanes; KEPT]; F],
     /// Number of known past values.
@@ -35,21 +36,24 @@ struct Part {
     states: Vec<usize>,
     forces: Vec<usize>,
     /// The matrix from `from` to the next states.
-    propagator: Vec<Lanes>,
-    from: Vec<Lanes>,
+    propagator: Rows,
+    from: Rows,
 }
 
 impl<const F: usize> ExponentialAbreast<F> {
     /// An integrator for systems with the sparsity of `one` and the tolerances `absolute`; all lanes are free.
     pub fn like(one: &ExponentialAdams<F>, absolute: &[f64]) -> Self {
         const NOTHING: Lanes = [0.0; LANES];
-        let states = || vec![NOTHING; one.state.len()];
+        let states = || Rows::zero(one.state.len());
         let part = |part: &super::Part| Part {
             states: part.states.clone(),
             forces: part.forces.clone(),
-            propagator: vec![NOTHING; part.states.len() * part.from.len()],
-            from: vec![NOTHING; part.from.len()],
+            propagator: Rows::zero(part.states.len() * part.from.len()),
+            from: Rows::zero(part.from.len()),
         };
+        let mut tolerances = states();
+        let rows = tolerances.iter_mut().zip(absolute);
+        rows.for_each(|(row, value)| row.fill(*value));
         Self {
             parts: one.parts.iter().map(part).collect(),
             whole: array::from_fn(|_| states()),
@@ -58,7 +62,7 @@ impl<const F: usize> ExponentialAbreast<F> {
             before: states(),
             stands: [true; LANES],
             ahead: states(),
-            absolute: absolute.iter().map(|value| [*value; LANES]).collect(),
+            absolute: tolerances,
             excess: states(),
             off: array::from_fn(|_| states()),
             past: [[NOTHING; KEPT]; F],
@@ -125,6 +129,7 @@ impl<const F: usize> ExponentialAbreast<F> {
     /// Predicts the next states.
     #[inline(always)]
     pub fn predict(&mut self) {
+        let states = &mut self.ahead[..];
         for part in &self.parts {
             let factors = part.from.as_chunks::<4>().0;
             let rows = part.propagator.chunks_exact(part.from.len());
@@ -139,7 +144,7 @@ impl<const F: usize> ExponentialAbreast<F> {
                     }
                 }
                 let [first, second, third, fourth] = sums;
-                for (lane, ahead) in self.ahead[place].iter_mut().enumerate() {
+                for (lane, ahead) in states[place].iter_mut().enumerate() {
                     *ahead = (first[lane] + second[lane]) + (third[lane] + fourth[lane]);
                 }
             }
@@ -186,7 +191,7 @@ impl<const F: usize> ExponentialAbreast<F> {
             excess[i] = error.abs() - (absolute[i] + relative * ahead[i].abs());
         }
         let mut within = [0.0; LANES];
-        for excess in &self.excess {
+        for excess in self.excess.iter() {
             for lane in 0..LANES {
                 within[lane] += if excess[lane] <= 0.0 { 1.0 } else { 0.0 };
             }
