@@ -122,18 +122,19 @@ impl Discrepancy {
             .collect()
     }
 
-    /// As [`Self::log_likelihoods`], with one part for each [source](Key::has_source_of).
-    pub fn log_likelihoods_by_source(&self, mut residual: Vec<f64>) -> Vec<f64> {
+    /// Log likelihood of the passages along each axis, which share every error of the tyre law, as in
+    /// [`Self::log_likelihoods`].
+    pub fn log_likelihoods_of_passages(&self, mut residual: Vec<f64>) -> Vec<f64> {
         self.whiten(&mut residual);
-        let mut sources: Vec<(&Key, f64)> = Vec::new();
-        for group in &self.groups {
+        let mut axes: Vec<(&Key, f64)> = Vec::new();
+        for group in self.groups.iter().filter(|own| own.key.kind == Kind::Passage) {
             let own: f64 = group.log_likelihoods(&residual).iter().sum();
-            match sources.iter_mut().find(|(known, _)| group.key.has_source_of(known)) {
+            match axes.iter_mut().find(|(known, _)| group.key.is_beside(known)) {
                 Some((_, sum)) => *sum += own,
-                None => sources.push((&group.key, own)),
+                None => axes.push((&group.key, own)),
             }
         }
-        sources.into_iter().map(|(_, sum)| sum).collect()
+        axes.into_iter().map(|(_, sum)| sum).collect()
     }
 
     /// Sets every `τ` to its most probable value for these data residuals in units of their noise.

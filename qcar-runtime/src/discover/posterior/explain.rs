@@ -64,11 +64,10 @@ impl Explanation {
         Some(discrepancy.log_likelihoods(self.residual(role, evidence)))
     }
 
-    /// Log likelihood of the fitted runs, up to a constant, for each source of errors: each sensor, and the tyre along
-    /// each axis; `None` without a discrepancy.
-    pub fn log_likelihoods_by_source(&self, evidence: &Evidence) -> Option<Vec<f64>> {
+    /// Log likelihood of the fitted passages along each axis, up to a constant; `None` without a discrepancy.
+    pub fn log_likelihoods_of_passages(&self, evidence: &Evidence) -> Option<Vec<f64>> {
         let discrepancy = self.refit.discrepancy.as_ref()?.carried_to(evidence, Role::Fit);
-        Some(discrepancy.log_likelihoods_by_source(self.residual(Role::Fit, evidence)))
+        Some(discrepancy.log_likelihoods_of_passages(self.residual(Role::Fit, evidence)))
     }
 
     /// Residual of the runs of a role, in units of the noise.

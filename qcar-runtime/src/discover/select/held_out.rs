@@ -1,6 +1,5 @@
 //! Checks sets on the held-out runs, which no fit and no choice has used.
 
-use super::assembly::Placed;
 use super::set::{Set, excess, explained_share, is_part, most_probable};
 use crate::campaign::Role;
 use crate::discover::observe::Evidence;
@@ -8,8 +7,8 @@ use crate::discover::posterior::Explanation;
 
 /// The set itself, or the part of it that remains after unsupported effects are removed. A smaller set replaces the set
 /// if it predicts the held-out runs at least as well, if the additional effects explain too little of its excess
-/// residual, if one of them has a parameter at its bound, or if only one source of errors prefers the set. The last two
-/// checks need no held-out runs.
+/// residual, if one of them has a parameter at its bound, or if only the cleat runs along one axis prefer the set. The last
+/// two checks need no held-out runs.
 pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
     let has_held_out = evidence.of_role(Role::HeldOut).next().is_some();
     loop {
@@ -25,7 +24,7 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
             let fails = has_held_out && (changes_little || !predicts_better(&sets[best], &sets[part], evidence));
             fails
                 || sets[best].adds_effect_at_bound(&sets[part], evidence)
-                || rests_on_one_source(&sets[best], &sets[part], evidence)
+                || rests_on_passages(&sets[best], &sets[part], evidence)
         };
         match most_probable(sets, (0..sets.len()).filter(is_answer).filter(withdrawn)) {
             Some(part) => best = part,
@@ -43,22 +42,20 @@ pub fn predicts_better(set: &Set, other: &Set, evidence: &Evidence) -> bool {
     none_held_out || score(&set.explanation) > score(&other.with_sensors_of(set, evidence))
 }
 
-/// True if a set with inaccurate sensors is not certainly more probable than a part of it without the readings of some
-/// sensor, or without the passages along some axis. No sensor is less accurate than its data sheet by that much, so the
-/// model is wrong in another way, which may be common to everything that this sensor or the tyre shows. Errors of
-/// sensors are exempt, since each is shown by one sensor.
-fn rests_on_one_source(set: &Set, part: &Set, evidence: &Evidence) -> bool {
-    let by_source = |own: &Set| own.explanation.log_likelihoods_by_source(evidence);
-    let is_of_sensor = |own: &Placed| own.unknowns.are_of_sensor();
-    if !set.has_inaccurate_sensors() || set.added_to(part).all(is_of_sensor) {
+/// True if a set with inaccurate sensors is not certainly more probable than a part of it without the cleat runs along
+/// some axis. No sensor is less accurate than its data sheet by that much, so the model is wrong in another way. An error
+/// of the tyre law is common to all these runs, which are then no more than one sign of an effect.
+fn rests_on_passages(set: &Set, part: &Set, evidence: &Evidence) -> bool {
+    let of_passages = |own: &Set| own.explanation.log_likelihoods_of_passages(evidence);
+    if !set.has_inaccurate_sensors() {
         return false;
     }
-    let (Some(own), Some(others)) = (by_source(set), by_source(part)) else {
+    let (Some(own), Some(others)) = (of_passages(set), of_passages(part)) else {
         return false;
     };
     let gains = own.iter().zip(&others).map(|(own, other)| own - other);
     let largest = gains.fold(0.0, f64::max);
-    set.log_posterior() - part.log_posterior() - largest < evidence.numbers.odds_of_certain().ln()
+    largest > 0.0 && set.log_posterior() - part.log_posterior() - largest < evidence.numbers.odds_of_certain().ln()
 }
 
 /// Logarithmic score: the log likelihood of the held-out runs, up to a constant.

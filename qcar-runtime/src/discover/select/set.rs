@@ -157,12 +157,8 @@ impl Set {
             own.unknowns.has_magnitude_at_bound(&self.explanation)
                 || has_other_causes && own.unknowns.has_parameter_at_bound(&self.explanation)
         };
-        self.added_to(part).any(is_at_bound)
-    }
-
-    /// The named effects that `part` lacks.
-    pub fn added_to<'a>(&'a self, part: &'a Set) -> impl Iterator<Item = &'a Placed> {
-        self.named().filter(|own| !part.names().contains(&own.name()))
+        let is_new = |own: &&Placed| !part.names().contains(&own.name());
+        self.named().filter(is_new).any(is_at_bound)
     }
 
     /// True if a parameter of the model is at its bound here and inside its range in the fit of `part`.

@@ -51,12 +51,6 @@ impl Unknowns {
         }
     }
 
-    /// True for an error of a sensor.
-    pub fn are_of_sensor(&self) -> bool {
-        let of_sensor = |own: &Unknown| matches!(own, Unknown::Coefficient(..));
-        self.all.iter().all(of_sensor)
-    }
-
     /// True if a magnitude is at its bound, a sign that the effect imitates another. Shape parameters are not counted.
     pub fn has_magnitude_at_bound(&self, explanation: &Explanation) -> bool {
         self.magnitudes.iter().any(|name| is_at_bound(explanation, name))

@@ -46,15 +46,6 @@ impl Key {
     pub fn is_beside(&self, other: &Key) -> bool {
         (self.sensor.axis, self.kind, self.run) == (other.sensor.axis, other.kind, other.run)
     }
-
-    /// True for a group that may be wrong by the same cause: an error of the tyre law acts on all passages along one
-    /// axis, and an error of a sensor on all other series of that sensor.
-    pub fn has_source_of(&self, other: &Key) -> bool {
-        match (self.kind, other.kind) {
-            (Kind::Passage, _) | (_, Kind::Passage) => self.is_beside(other),
-            _ => self.sensor == other.sensor,
-        }
-    }
 }
 
 /// Steps of the search for `τ`.

@@ -114,21 +114,3 @@ fn sensors_of_one_force_count_as_one() {
     assert!(alone > 0.0 && (of(Kind::Passage, 3) - alone / 3.0).abs() < 1e-12);
     assert_eq!(of(Kind::Time, 3), of(Kind::Time, 1));
 }
-
-/// A sensor is one source of errors with all its harmonics, and the tyre one along each axis with all sensors.
-#[test]
-fn sources_of_errors_are_sensors_and_the_tyre_along_an_axis() {
-    use crate::campaign::{Axis, Quantity};
-    let key = |location: &str, axis, kind| Key {
-        sensor: Point::new(location, axis, Quantity::Acceleration),
-        kind,
-        ..group(&[0.0], 1.0).key
-    };
-    let fundamental = key("body", Axis::Z, Kind::Harmonic(1));
-    assert!(fundamental.has_source_of(&key("body", Axis::Z, Kind::Harmonic(2))));
-    assert!(!fundamental.has_source_of(&key("wheel", Axis::Z, Kind::Harmonic(1))));
-    let passage = key("body", Axis::Z, Kind::Passage);
-    assert!(passage.has_source_of(&key("wheel", Axis::Z, Kind::Passage)));
-    assert!(!passage.has_source_of(&key("body", Axis::X, Kind::Passage)));
-    assert!(!passage.has_source_of(&fundamental) && !fundamental.has_source_of(&passage));
-}
