@@ -219,6 +219,39 @@ fn derivatives_by_initial_states_are_those_of_differences() {
     }
 }
 
+/// A critically damped mass, whose motion from an initial velocity decays by 1000 per second: after 0.7 s it is subnormal,
+/// with which some processors compute a hundred times more slowly.
+#[test]
+fn derivatives_that_have_vanished_are_zero() {
+    let model = find("one_mass").unwrap().model;
+    let place = |name: &str| model.about().parameters.iter().position(|p| p.name == name).unwrap();
+    let mut p = vec![0.0; model.about().parameters.len()];
+    (p[place("m_body")], p[place("c_body")], p[place("k_body")]) = (2.0, 4e3, 2e6);
+    let samples = vec![0.0; 2000];
+    let recorded = Recorded {
+        excitation: 0,
+        power: 0,
+        samples: &samples,
+    };
+    let state = |name: &str| model.about().states.iter().position(|s| s.name == name).unwrap();
+    let readings = vec![Reading::State(state("z_body"))];
+    // With a restart, derivatives by initial states are integrated in a linear model too.
+    let restart = vec![(1999, Vec::new())];
+    let replay = Replay::new(
+        model,
+        vec![recorded],
+        band_limited(2000.0, samples.len()),
+        restart,
+        readings,
+    );
+    let base = replay.run(&p, &[]);
+    let slopes = replay.along(&base, (&p, &[]), &[Direction::Initial(state("z_body"))]);
+    let slopes = &slopes[0][0];
+    assert!((slopes[2] - 2.0 / std::f64::consts::E).abs() < 1e-3, "{}", slopes[2]);
+    assert!(slopes.iter().all(|slope| !slope.is_subnormal()));
+    assert_eq!(slopes[1999], 0.0);
+}
+
 /// A quarter car with the laws that have kinks: dry friction, a digressive and asymmetric damper, a bump stop, a
 /// progressive tyre.
 const WITH_KINKS: &str = "
