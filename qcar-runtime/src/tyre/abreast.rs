@@ -174,8 +174,8 @@ fn turns(radius: f64, chords: &Chords, wheels: &Wheels) -> Turns {
 
 /// The entries of a lane.
 #[inline(always)]
-fn at(rows: &[Lanes; 2], lane: usize) -> [f64; 2] {
-    [rows[0][lane], rows[1][lane]]
+fn at<const ROWS: usize>(rows: &[Lanes; ROWS], lane: usize) -> [f64; ROWS] {
+    std::array::from_fn(|row| rows[row][lane])
 }
 
 impl Touches {
@@ -232,10 +232,7 @@ impl Touches {
     pub fn pushing(&self, resisting: &[Lanes; 3]) -> Contacts {
         let mut contacts = Contacts::default();
         for lane in 0..LANES {
-            let own = self
-                .get(lane)
-                .pushing([resisting[0][lane], resisting[1][lane], resisting[2][lane]]);
-            contacts.set(lane, &own);
+            contacts.set(lane, &self.get(lane).pushing(at(resisting, lane)));
         }
         contacts
     }
