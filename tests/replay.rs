@@ -144,7 +144,6 @@ fn it_does_not_matter_what_was_recorded_of_a_motion() {
     }
 }
 
-/// One mass on a spring and damper under a force that steps at a sample: the step response in closed form.
 /// A reading under a force that is held from sample to sample.
 fn pushed(model: &dyn Model, p: &[f64], (samples, rate): (&[f64], f64), reading: Reading) -> Vec<f64> {
     let recorded = Recorded {
@@ -159,6 +158,7 @@ fn pushed(model: &dyn Model, p: &[f64], (samples, rate): (&[f64], f64), reading:
     replay(model, p, vec![recorded], held, vec![reading]).unwrap().remove(0)
 }
 
+/// One mass on a spring and damper under a force that steps at a sample: the step response in closed form.
 #[test]
 fn a_held_force_acts_from_its_sample_on() {
     let model = find("one_mass").unwrap().model;

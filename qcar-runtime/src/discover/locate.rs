@@ -3,8 +3,8 @@
 //! A dynamic stiffness κ(ω) added across a link with stretch s and force pair F changes every response by `H' - H = -κ
 //! / (1 + κ H(s,F)) · H(y,F) H(s,u)`. All channels share the first factor, a scalar. Up to the unit, the rest is the
 //! derivative of the response by a parameter of that link, which every model provides. Each parameter of a model
-//! therefore represents a place. Linear least squares give the best scalar of each line, without a refit. The same formula gives
-//! `H(s,F)` from one finite change of the parameter.
+//! therefore represents a place. Linear least squares give the best scalar of each line, without a refit. The same
+//! formula gives `H(s,F)` from one finite change of the parameter.
 
 // Missing dynamic stiffness, run by run.
 mod missing_stiffness;

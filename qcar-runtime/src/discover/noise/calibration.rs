@@ -63,8 +63,8 @@ impl AccuracyClass {
     }
 }
 
-/// Priors of a sensor in addition to its calibration curve: 0.7 % of gain; 0.2° of phase; 50 µs of delay; an offset in time
-/// histories of a tenth of the reading.
+/// Priors of a sensor in addition to its calibration curve: 0.7 % of gain; 0.2° of phase; 50 µs of delay; an offset in
+/// time histories of a tenth of the reading.
 ///
 /// Thesis section 3.4 uses capacitive accelerometers. Their data sheets give 0.5 to 1 % of gain and the phase of a
 /// first-order filter at several hundred hertz.
