@@ -7,6 +7,8 @@
 mod input;
 // How the readings of a linear model depend on its initial states.
 mod initial;
+// States that decay within a step.
+mod decay;
 // Steps of the Runge-Kutta method, with step control.
 mod stepper;
 // Derivatives of the signals, integrated with the motion.
@@ -25,7 +27,7 @@ use crate::model::{About, Model, Quantity, SignalKind, StateKind};
 use crate::response::signal::{SignalError, missing, output_of};
 use initial::FreeResponse;
 use input::rows;
-use stepper::Stepper;
+use stepper::{Stepper, Taken};
 use tangent::{Step, Tangent};
 
 /// Source of a sensor's signal during integration.
@@ -58,8 +60,8 @@ pub struct Replayed {
     states: Instants,
     /// All states one sample after the last.
     end: Vec<f64>,
-    /// Number of halvings of each step.
-    halvings: Vec<u8>,
+    /// How each step was taken.
+    taken: Vec<Taken>,
     /// Number of replays until the motion was periodic.
     periods: usize,
 }
@@ -192,7 +194,7 @@ impl<'a> Replay<'a> {
         let mut restarts = self.restarts.iter().peekable();
         let mut signals = vec![Vec::with_capacity(self.how.samples); self.readings.len() * tangent.directions()];
         let mut taken = Vec::new();
-        for (sample, halvings) in base.halvings.chunks(steps).enumerate() {
+        for (sample, own) in base.taken.chunks(steps).enumerate() {
             let restart = restarts.next_if(|(at, _)| *at == sample);
             if restart.is_some() || taken.len() >= AT_ONCE {
                 tangent.follow(&taken, &mut signals);
@@ -206,12 +208,12 @@ impl<'a> Replay<'a> {
             }
             // The replay has kept the states of its last period alone.
             let known = (period == base.periods).then(|| base.states.at(sample));
-            taken.extend(halvings.iter().enumerate().map(|(step, &halvings)| {
+            taken.extend(own.iter().enumerate().map(|(step, &taken)| {
                 let node = 2 * (sample * steps + step);
                 Step {
                     nodes: [node, node + 1, self.end(node, count)].map(|node| inputs.at(node)),
                     length,
-                    halvings,
+                    taken,
                     is_read: step == 0,
                     from: known.filter(|_| step == 0),
                 }
@@ -228,7 +230,7 @@ impl<'a> Replay<'a> {
         }
         let steps = steps(self.how.rate);
         let free = FreeResponse::new(self.model, p, 1.0 / (self.how.rate * steps as f64));
-        let of_reading = |reading: &Reading| free.of(*reading, base.halvings.chunks(steps), states);
+        let of_reading = |reading: &Reading| free.of(*reading, base.taken.chunks(steps), states);
         let by_reading: Vec<Vec<Vec<f64>>> = self.readings.par_iter().map(of_reading).collect();
         let of_state = |state: usize| by_reading.iter().map(|rows| rows[state].clone()).collect();
         (0..states.len()).map(of_state).collect()
@@ -252,7 +254,7 @@ impl<'a> Replay<'a> {
         let mut y = vec![0.0; self.model.about().outputs.len()];
         let mut stepper = Stepper::new(self.model, p, 1.0 / (self.how.rate * steps as f64));
         let count = inputs.count();
-        let mut halvings = Vec::with_capacity(count / 2);
+        let mut taken = Vec::with_capacity(count / 2);
         let mut signals = vec![Vec::new(); self.readings.len()];
         let mut states = Vec::with_capacity(x.len() * self.how.samples);
         for first in (0..count).step_by(2 * steps) {
@@ -274,7 +276,7 @@ impl<'a> Replay<'a> {
             states.extend_from_slice(&x);
             for node in (first..first + 2 * steps).step_by(2) {
                 let nodes = [node, node + 1, self.end(node, count)];
-                halvings.push(stepper.find(nodes.map(|node| inputs.at(node)), &mut x));
+                taken.push(stepper.find(nodes.map(|node| inputs.at(node)), &mut x));
             }
         }
         Replayed {
@@ -284,7 +286,7 @@ impl<'a> Replay<'a> {
                 values: states,
             },
             end: x,
-            halvings,
+            taken,
             periods: 1,
         }
     }

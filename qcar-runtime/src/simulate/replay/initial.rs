@@ -5,6 +5,7 @@
 //! the number of nonzeros of A, whatever the number of states.
 
 use super::Reading;
+use super::stepper::Taken;
 use crate::matrices::at_rest;
 use crate::model::{About, Entry, Matrix, Model};
 
@@ -38,21 +39,21 @@ impl<'a> FreeResponse<'a> {
         }
     }
 
-    /// For each of `states`, the samples of a reading if this state begins at one and all others at zero. `halvings`
-    /// are those of the steps of each sample.
+    /// For each of `states`, the samples of a reading if this state begins at one and all others at zero. `taken`
+    /// are the steps of each sample.
     pub fn of<'s>(
         &self,
         reading: Reading,
-        halvings: impl Iterator<Item = &'s [u8]>,
+        taken: impl Iterator<Item = &'s [Taken]>,
         states: &[usize],
     ) -> Vec<Vec<f64>> {
         let mut row = self.row(reading);
         let mut responses = vec![Vec::new(); states.len()];
-        for steps in halvings {
+        for steps in taken {
             for (response, &state) in responses.iter_mut().zip(states) {
                 response.push(row[state]);
             }
-            steps.iter().for_each(|&halvings| self.step(&mut row, halvings));
+            steps.iter().for_each(|step| self.step(&mut row, step.halvings));
         }
         responses
     }

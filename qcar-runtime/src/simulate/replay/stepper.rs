@@ -1,10 +1,12 @@
-//! Steps of the classical Runge-Kutta method, halved where a law is too stiff or too sharp.
+//! Steps of the classical Runge-Kutta method, halved where a law is too sharp. Where a law is too stiff, the exponential
+//! method of [`decay`](super::decay) takes its place.
 //!
 //! Together with the derivative at the end of a step, which the next step needs anyway, the same stages form a
 //! third-order method. The difference of both methods is the controlled error (Hairer, Norsett, Wanner: Solving
-//! ordinary differential equations I, section II.4). The number of halvings of each step is stored: derivatives are
-//! those of the same steps.
+//! ordinary differential equations I, section II.4). How each step was taken is stored: derivatives are those of the
+//! same steps.
 
+use super::decay::Decay;
 use crate::model::Model;
 use crate::solver::rk4;
 
@@ -20,10 +22,23 @@ const DIVERGED: f64 = 1.0 / TOLERANCE;
 /// Relative error below which the step length doubles: the error grows about 16 times.
 const ROOM: f64 = 1.0 / 32.0;
 
+/// How a step was taken.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Taken {
+    /// How often it was halved.
+    pub halvings: u8,
+    /// True if the decay of states by their own values was separated.
+    pub decays: bool,
+}
+
 /// Integrates step by step.
 pub struct Stepper<'a> {
     model: &'a dyn Model,
     constants: Vec<f64>,
+    decay: Decay<'a>,
+    /// True if states may decay within a step, and if they did in the last part.
+    may_decay: bool,
+    decays: bool,
     /// Length of a whole step, s.
     length: f64,
     k: [Vec<f64>; 5],
@@ -42,7 +57,7 @@ pub struct Stepper<'a> {
 
 impl<'a> Stepper<'a> {
     /// A stepper for a model with these parameter values, with steps of `length` (s).
-    pub fn new(model: &'a dyn Model, p: &[f64], length: f64) -> Self {
+    pub fn new(model: &'a dyn Model, p: &'a [f64], length: f64) -> Self {
         let about = model.about();
         let (states, inputs) = (about.states.len(), about.inputs.len());
         let mut constants = vec![0.0; about.constants];
@@ -50,6 +65,9 @@ impl<'a> Stepper<'a> {
         Self {
             model,
             constants,
+            decay: Decay::new(model, p),
+            may_decay: false,
+            decays: false,
             length,
             k: std::array::from_fn(|_| vec![0.0; states]),
             x: vec![0.0; states],
@@ -72,12 +90,13 @@ impl<'a> Stepper<'a> {
         self.knows_slope = false;
     }
 
-    /// Takes a step with the inputs at its start, middle and end. Halves it as often as needed and returns the number
-    /// of halvings. A motion that has diverged all the same is NaN from then on.
-    pub fn find(&mut self, inputs: [&[f64]; 3], x: &mut [f64]) -> u8 {
+    /// Takes a step with the inputs at its start, middle and end. Separates the decay of states if the error is large
+    /// and they decay within a part of the step; then halves it as often as needed. A motion that has diverged all the
+    /// same is NaN from then on.
+    pub fn find(&mut self, inputs: [&[f64]; 3], x: &mut [f64]) -> Taken {
         if x.iter().any(|x| !x.is_finite()) {
             x.fill(f64::NAN);
-            return 0;
+            return Taken::default();
         }
         let knew_slope = self.knows_slope && self.last == inputs[0];
         self.start[0].copy_from_slice(x);
@@ -92,10 +111,17 @@ impl<'a> Stepper<'a> {
                 if error < ROOM {
                     self.halvings = halvings.saturating_sub(1);
                 }
-                return halvings;
+                let decays = self.may_decay;
+                self.may_decay = self.decays;
+                return Taken { halvings, decays };
             }
-            self.halvings += 1;
             x.copy_from_slice(&self.start[0]);
+            let length = self.length / f64::from(1_u32 << halvings);
+            if !self.may_decay && self.decay.find(x, inputs[0], length) {
+                self.may_decay = true;
+            } else {
+                self.halvings += 1;
+            }
             self.k[4].copy_from_slice(&self.start[1]);
             self.knows_slope = knew_slope;
             self.last.copy_from_slice(inputs[0]);
@@ -106,6 +132,7 @@ impl<'a> Stepper<'a> {
     fn parts(&mut self, inputs: [&[f64]; 3], halvings: u8, x: &mut [f64]) -> f64 {
         // A held input jumps from one sample to the next.
         self.knows_slope &= self.last == inputs[0];
+        self.decays = false;
         let error = if halvings == 0 {
             self.part(inputs, self.length, x);
             self.error(self.length, x)
@@ -133,6 +160,7 @@ impl<'a> Stepper<'a> {
 
     /// Takes a Runge-Kutta step of length `h` (s).
     fn part(&mut self, inputs: [&[f64]; 3], h: f64, x: &mut [f64]) {
+        self.decays = self.may_decay && self.decay.find(x, inputs[0], h);
         let Self {
             model, constants, k, ..
         } = self;
@@ -144,7 +172,11 @@ impl<'a> Stepper<'a> {
         let derivative = |part: f64, x: &[f64], k: &mut [f64]| {
             model.derivative(constants, x, inputs[(2.0 * part) as usize], k);
         };
-        rk4::step(derivative, h, x, k, &mut self.x);
+        if self.decays {
+            self.decay.step(derivative, x, k, &mut self.x);
+        } else {
+            rk4::step(derivative, h, x, k, &mut self.x);
+        }
         x.copy_from_slice(&self.x);
         self.knows_slope = true;
     }
@@ -153,7 +185,12 @@ impl<'a> Stepper<'a> {
     fn error(&self, h: f64, x: &[f64]) -> f64 {
         let error = |i: usize| {
             let size = self.largest[i].max(x[i].abs());
-            let error = (h / 6.0 * (self.k[3][i] - self.k[4][i])).abs();
+            let [last, end] = [self.k[3][i], self.k[4][i]];
+            let error = if self.decays {
+                self.decay.error(i, last, end, x[i]).abs()
+            } else {
+                (h / 6.0 * (last - end)).abs()
+            };
             if error == 0.0 { 0.0 } else { error / (TOLERANCE * size) }
         };
         (0..x.len())

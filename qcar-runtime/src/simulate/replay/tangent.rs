@@ -3,8 +3,8 @@
 //! Each stage of the Runge-Kutta method is differentiated with the model's own Jacobians: `K = A S + ∂f/∂p`, or `A S +
 //! B u` for the log amplitude of an input. So the result is the derivative of the computed motion itself, whatever the
 //! length of its steps. At a kink of a law the stage decides which side counts; forces are continuous there, so the
-//! sensitivities do not jump. Only where an inner state would not decay within a step, the step is halved further: a
-//! motion may rest there, but its derivatives would grow.
+//! sensitivities do not jump. Where a state decays within a step, its derivatives follow the exponential method of
+//! [`decay`](super::decay), even if the motion does not: it may rest there, but its derivatives would grow.
 //!
 //! Source: Hairer, Norsett, Wanner, Solving ordinary differential equations I, section I.14.
 
@@ -16,11 +16,12 @@ mod effects;
 mod slopes;
 
 use super::Reading;
-use super::stepper::within;
+use super::decay::{Decay, Weights, own};
+use super::stepper::{Taken, within};
 use crate::model::{LANES, Lanes, Model};
 use crate::solver::rk4;
 use crate::vectors::over_lanes;
-use effects::{Effects, fastest_decay};
+use effects::Effects;
 use slopes::Advance;
 use stages::{Jacobians, Part, STAGES};
 
@@ -35,11 +36,6 @@ pub enum Direction {
     Initial(usize),
 }
 
-/// Longest step times rate of decay of a state, for which the method still lets it decay.
-const LONGEST: f64 = 2.5;
-/// Most further halvings of a step for that reason.
-const MOST: u8 = 3;
-
 /// A step of a replay.
 #[derive(Clone, Copy)]
 pub struct Step<'n> {
@@ -47,8 +43,8 @@ pub struct Step<'n> {
     pub nodes: [&'n [f64]; 3],
     /// Length, s.
     pub length: f64,
-    /// How often it was halved.
-    pub halvings: u8,
+    /// How it was taken.
+    pub taken: Taken,
     /// True if the readings are taken at its start.
     pub is_read: bool,
     /// State at its start, if it is known.
@@ -56,9 +52,9 @@ pub struct Step<'n> {
 }
 
 impl Step<'_> {
-    /// Number of its parts if it is halved some times more.
-    fn parts(&self, finer: u8) -> u32 {
-        1 << (self.halvings + finer)
+    /// Number of its parts.
+    fn parts(&self) -> u32 {
+        1 << self.taken.halvings
     }
 }
 
@@ -74,14 +70,12 @@ pub struct Tangent<'a> {
     slopes: Vec<Lanes>,
     of_states: Effects,
     of_readings: Effects,
-    /// Nonzeros of A by which states depend on their own values.
-    own: Vec<usize>,
+    decay: Decay<'a>,
+    /// Nonzeros of A by which states depend on their own values, with these states.
+    own: Vec<(usize, usize)>,
     jacobians: Jacobians,
-    /// State before some steps.
-    before: Vec<f64>,
-    /// How often each step is halved beyond its own halvings, and how much further it must be.
-    finer: Vec<u8>,
-    further: Vec<u8>,
+    /// Weights of all states in the parts in which one decays.
+    weights: Vec<Weights>,
     /// Workspace of the motion: slopes of the stages, the state at the end of a step, and inputs of a part of a step.
     k: [Vec<f64>; 5],
     x_end: Vec<f64>,
@@ -91,7 +85,7 @@ pub struct Tangent<'a> {
     direct: [Vec<Lanes>; 2],
     read_at: Vec<usize>,
     read: Vec<Lanes>,
-    work: [Vec<Lanes>; 3],
+    work: [Vec<Lanes>; 6],
 }
 
 impl<'a> Tangent<'a> {
@@ -110,13 +104,12 @@ impl<'a> Tangent<'a> {
             constants,
             x: vec![0.0; n],
             slopes: vec![[0.0; LANES]; blocks * n],
-            own: of_states.own(),
+            decay: Decay::new(model, p),
+            own: own(model),
             of_states,
             of_readings: Effects::on_readings(model, directions, readings),
             jacobians: Jacobians::default(),
-            before: vec![0.0; n],
-            finer: Vec::new(),
-            further: Vec::new(),
+            weights: Vec::new(),
             k: std::array::from_fn(|_| vec![0.0; n]),
             x_end: vec![0.0; n],
             inputs: std::array::from_fn(|_| vec![0.0; m]),
@@ -154,72 +147,64 @@ impl<'a> Tangent<'a> {
     /// Takes the steps of some samples, and adds the derivatives of the readings to `signals`, a row for each reading
     /// and direction. All Jacobians of these steps are evaluated at once.
     pub fn follow(&mut self, steps: &[Step<'_>], signals: &mut [Vec<f64>]) {
-        self.before.copy_from_slice(&self.x);
-        self.finer.clear();
-        self.finer.resize(steps.len(), 0);
-        loop {
-            self.x.copy_from_slice(&self.before);
-            let parts = steps.iter().zip(&self.finer).map(|(step, finer)| step.parts(*finer));
-            let sizes = (self.x.len(), self.model.about().inputs.len());
-            self.jacobians
-                .stages
-                .prepare(parts.map(|parts| parts as usize).sum(), sizes);
-            for (place, step) in steps.iter().enumerate() {
-                self.step(place, step);
-            }
-            self.jacobians.evaluate_matrices(self.model, self.p);
-            if !self.refine() {
-                break;
-            }
-        }
+        let parts = steps.iter().map(|step| step.parts() as usize).sum();
+        let sizes = (self.x.len(), self.model.about().inputs.len());
+        self.jacobians.stages.prepare(parts, sizes);
+        steps.iter().for_each(|step| self.step(step));
+        self.jacobians.evaluate_matrices(self.model, self.p);
+        self.find_decays();
         self.jacobians.evaluate_parameters(self.model, self.p);
         self.advance_slopes();
         self.store(signals);
     }
 
-    /// Halves the steps further in which a state would not decay. False if there is none.
-    fn refine(&mut self) -> bool {
-        self.further.clear();
-        self.further.resize(self.finer.len(), 0);
-        for (place, part) in self.jacobians.stages.parts.iter().enumerate() {
-            let times = fastest_decay(&self.own, &self.jacobians, place) * part.length / LONGEST;
-            if times > 1.0 {
-                let room = MOST - self.finer[part.step];
-                let halvings = times.log2().ceil().min(f64::from(room));
-                self.further[part.step] = self.further[part.step].max(halvings as u8);
+    /// Finds the states that decay within a part, by their fastest rates at its stages.
+    fn find_decays(&mut self) {
+        let Self { own, jacobians, weights, .. } = self;
+        weights.clear();
+        for place in 0..jacobians.stages.parts.len() {
+            let h = jacobians.stages.parts[place].length;
+            let points = || STAGES * place..STAGES * (place + 1);
+            let rate = |nonzero: usize| points().map(|point| jacobians.matrix(nonzero, point)).fold(0.0, f64::min);
+            let decaying = own.iter().map(|&(nonzero, state)| (state, Weights::new(rate(nonzero), h)));
+            let decaying: Vec<_> = decaying.filter(|(_, own)| own.decays()).collect();
+            if decaying.is_empty() {
+                continue;
             }
+            let first = weights.len();
+            weights.resize(first + self.x.len(), Weights::new(0.0, h));
+            decaying.iter().for_each(|&(state, own)| weights[first + state] = own);
+            jacobians.stages.parts[place].weights = Some(first);
         }
-        let finer = self.finer.iter_mut().zip(&self.further);
-        finer.for_each(|(finer, further)| *finer += further);
-        self.further.iter().any(|&further| further > 0)
     }
 
     /// Advances the motion by a step in its parts.
-    fn step(&mut self, place: usize, step: &Step<'_>) {
+    fn step(&mut self, step: &Step<'_>) {
         if let Some(state) = step.from {
             self.x.copy_from_slice(state);
         }
-        let parts = step.parts(self.finer[place]);
+        let parts = step.parts();
         let length = step.length / f64::from(parts);
         for part in 0..parts {
             self.jacobians.stages.parts.push(Part {
-                step: place,
                 length,
+                weights: None,
                 is_read: step.is_read && part == 0,
             });
             if parts == 1 {
-                self.part(step.nodes, length);
+                self.part(step.nodes, length, step.taken.decays);
             } else {
                 let mut inputs = std::mem::take(&mut self.inputs);
                 within(step.nodes, (part, parts), &mut inputs);
-                self.part(inputs.each_ref().map(Vec::as_slice), length);
+                self.part(inputs.each_ref().map(Vec::as_slice), length, step.taken.decays);
                 self.inputs = inputs;
             }
         }
     }
 
     /// Advances the motion by the last of the known parts.
-    fn part(&mut self, inputs: [&[f64]; 3], length: f64) {
+    fn part(&mut self, inputs: [&[f64]; 3], length: f64, may_decay: bool) {
+        let decays = may_decay && self.decay.find(&self.x, inputs[0], length);
         let Self { model, constants, .. } = self;
         let stages = &mut self.jacobians.stages;
         let first = STAGES * (stages.parts.len() - 1);
@@ -235,7 +220,11 @@ impl<'a> Tangent<'a> {
                 stage += 1;
             }
         };
-        rk4::step(derivative, length, &self.x, &mut self.k, &mut self.x_end);
+        if decays {
+            self.decay.step(derivative, &self.x, &mut self.k, &mut self.x_end);
+        } else {
+            rk4::step(derivative, length, &self.x, &mut self.k, &mut self.x_end);
+        }
         self.x.copy_from_slice(&self.x_end);
     }
 
@@ -256,6 +245,7 @@ impl<'a> Tangent<'a> {
         for block in 0..blocks {
             over_lanes(Advance {
                 jacobians: &self.jacobians,
+                weights: &self.weights,
                 of_states: (&self.of_states, &direct[block * points * states..][..points * states]),
                 readings: self.readings,
                 of_readings: (&self.of_readings, &read_direct[block * reads..][..reads]),

@@ -3,7 +3,7 @@
 
 use super::super::Reading;
 use super::Direction;
-use super::stages::{Jacobians, STAGES};
+use super::stages::Jacobians;
 use crate::model::{InputKind, LANES, Lanes, Matrix, Model};
 
 /// A direct effect of a direction on a row.
@@ -123,17 +123,6 @@ impl Effects {
         }
         sum
     }
-
-    /// Nonzeros by which the rows of states depend on their own values.
-    pub fn own(&self) -> Vec<usize> {
-        let of_row = |row: usize| {
-            let first = if row == 0 { 0 } else { self.ends[row - 1] };
-            let own = self.nonzeros[first..self.ends[row]].iter();
-            own.filter(move |(_, column)| *column == row)
-        };
-        let own = (0..self.rows()).flat_map(of_row);
-        own.map(|(nonzero, _)| *nonzero).collect()
-    }
 }
 
 /// Direct effects of a direction on the derivatives of the states or on the outputs, each with its row.
@@ -160,11 +149,4 @@ fn factors(model: &dyn Model, direction: &Direction, of_outputs: bool) -> Vec<(u
                 .collect()
         }
     }
-}
-
-/// Fastest decay of a state in a part of a step, 1/s, by its own value alone.
-pub fn fastest_decay(own: &[usize], jacobians: &Jacobians, part: usize) -> f64 {
-    let points = STAGES * part..STAGES * (part + 1);
-    let rates = points.flat_map(|point| own.iter().map(move |nonzero| -jacobians.matrix(*nonzero, point)));
-    rates.fold(0.0, f64::max)
 }

@@ -1,6 +1,7 @@
 //! The derivatives of the states through the parts of some steps.
 
 use super::super::Reading;
+use super::super::decay::Weights;
 use super::effects::Effects;
 use super::stages::{Jacobians, STAGES};
 use crate::model::Lanes;
@@ -16,6 +17,8 @@ const WEIGHTS: [f64; STAGES] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
 pub struct Advance<'a> {
     /// The parts, with the Jacobians at their stages.
     pub jacobians: &'a Jacobians,
+    /// Weights of all states in the parts in which one decays.
+    pub weights: &'a [Weights],
     /// Effects on the states, and the direct ones of this block at each point.
     pub of_states: (&'a Effects, &'a [Lanes]),
     /// What is read.
@@ -24,8 +27,9 @@ pub struct Advance<'a> {
     pub of_readings: (&'a Effects, &'a [Lanes]),
     /// Derivatives of the states.
     pub slopes: &'a mut [Lanes],
-    /// Workspace: rows of a stage's states, of its slopes, and of the states at the end of a part.
-    pub work: [&'a mut [Lanes]; 3],
+    /// Workspace: rows of the states at a stage, of those at the end of a part or at another stage, and of the slopes at
+    /// the stages.
+    pub work: [&'a mut [Lanes]; 6],
     /// Where the derivatives of the readings go, for each part that is read.
     pub read: &'a mut [Lanes],
 }
@@ -41,7 +45,14 @@ impl Loops for Advance<'_> {
                 self.read(reads, STAGES * place);
                 reads += 1;
             }
-            self.part(STAGES * place, part.length);
+            match part.weights {
+                None => self.part(STAGES * place, part.length),
+                Some(weights) => {
+                    let weights = &self.weights[weights..][..self.slopes.len()];
+                    self.decaying_part(STAGES * place, weights);
+                }
+            }
+            self.slopes.iter_mut().for_each(|slope| *slope = slope.map(without_vanished));
         }
     }
 }
@@ -65,7 +76,7 @@ impl Advance<'_> {
     #[inline(always)]
     fn part(&mut self, first: usize, h: f64) {
         let (effects, direct) = self.of_states;
-        let [stage, k, end] = &mut self.work;
+        let [stage, end, k, ..] = &mut self.work;
         stage.copy_from_slice(self.slopes);
         end.copy_from_slice(self.slopes);
         for (of_step, weight) in WEIGHTS.iter().enumerate() {
@@ -81,8 +92,36 @@ impl Advance<'_> {
                 }
             }
         }
-        let ends = self.slopes.iter_mut().zip(&**end);
-        ends.for_each(|(slope, end)| *slope = end.map(without_vanished));
+        self.slopes.copy_from_slice(end);
+    }
+
+    /// Advances by a part in which states decay, with the weights of all states.
+    #[inline(always)]
+    fn decaying_part(&mut self, first: usize, weights: &[Weights]) {
+        let (effects, direct) = self.of_states;
+        let [stage, middle, k @ ..] = &mut self.work;
+        stage.copy_from_slice(self.slopes);
+        for of_step in 0..STAGES {
+            let point = first + of_step;
+            let direct = &direct[point * effects.rows()..][..effects.rows()];
+            for (row, (direct, own)) in direct.iter().zip(weights).enumerate() {
+                let slope = effects.row(row, (self.jacobians, point), stage, direct);
+                k[of_step][row] = sum(&slope, -own.rate, &stage[row]);
+            }
+            let lanes = |at: &dyn Fn(usize) -> f64| std::array::from_fn(at);
+            for (row, own) in weights.iter().enumerate() {
+                let (x, k) = (&self.slopes[row], k.each_ref().map(|k| &k[row]));
+                stage[row] = match of_step {
+                    0 | 1 => lanes(&|lane| own.middle(x[lane], k[of_step][lane])),
+                    2 => lanes(&|lane| own.last(middle[row][lane], k[0][lane], k[2][lane])),
+                    _ => lanes(&|lane| own.end(x[lane], k.map(|k| k[lane]))),
+                };
+            }
+            if of_step == 0 {
+                middle.copy_from_slice(stage);
+            }
+        }
+        self.slopes.copy_from_slice(stage);
     }
 }
 

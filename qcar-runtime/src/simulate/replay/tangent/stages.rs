@@ -18,10 +18,10 @@ pub struct Stages {
 
 /// A part of a step.
 pub struct Part {
-    /// The step, by its place among those that are followed together.
-    pub step: usize,
     /// Length, s.
     pub length: f64,
+    /// Where the weights of the states begin, if one of them decays within the part.
+    pub weights: Option<usize>,
     /// True if the readings are taken at its start.
     pub is_read: bool,
 }
