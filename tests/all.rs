@@ -6,6 +6,7 @@ mod evidence;
 mod examples;
 #[path = "family/main.rs"]
 mod family;
+mod machines;
 mod replay;
 mod rig_fit;
 mod travel;

@@ -801,6 +801,37 @@ fn a_compliant_digressive_damper_is_its_valves_when_slow_and_its_spring_when_fas
     assert!((found / wanted - 1.0).abs() < 1e-3, "{found}, not {wanted}");
 }
 
+/// The same with two slopes: beyond the knee, the force grows by the second one with the speed.
+#[test]
+fn a_compliant_damper_with_two_slopes_is_its_valves_when_slow_and_its_spring_when_fast() {
+    let model = in_form(
+        &model("axle_b_rigid_tm"),
+        "compliant_digressive_damper",
+        "slopes",
+        "damper",
+    );
+    let (rebound, compression, knee, beyond, k) = (3000.0, 2000.0, 0.3, 0.25, 4e5);
+    let values = [
+        ("c_rebound", rebound),
+        ("c_compression", compression),
+        ("v_knee", knee),
+        ("slope_beyond", beyond),
+        ("k_series", k),
+    ];
+    let running = Running::new(&model, &values);
+    for speed in [-1.2, -0.2, 0.05, 0.3, 1.2_f64] {
+        let c = if speed > 0.0 { rebound } else { compression };
+        let past = (speed.abs() - knee).max(0.0);
+        let wanted = c * speed.signum() * (speed.abs() - (1.0 - beyond) * past);
+        let found = of_states(&running, &driven(&running, &[(speed, 0.5)]));
+        assert!((found / wanted - 1.0).abs() < 1e-6, "{found} at {speed} m/s, not {wanted}");
+    }
+    let (speed, time) = (1e-4, 5e-3);
+    let wanted = rebound * speed * (1.0 - (-k / rebound * time).exp());
+    let found = of_states(&running, &driven(&running, &[(speed, time)]));
+    assert!((found / wanted - 1.0).abs() < 1e-6, "{found}, not {wanted}");
+}
+
 #[test]
 fn a_part_that_slides_is_held_by_friction_and_by_drag() {
     let model = patched(&model("axle_c"), "sliding_friction", "wheel");

@@ -110,6 +110,9 @@ impl<'a> Decay<'a> {
 
     /// Finds the states that decay within a step of length `h` (s) from `x`. False if there is none.
     pub fn find(&mut self, x: &[f64], u: &[f64], h: f64) -> bool {
+        if self.own.is_empty() {
+            return false;
+        }
         self.model.matrices(self.p, x, u, &mut self.matrices);
         self.weights.clear();
         self.weights.resize(x.len(), Weights::new(0.0, h));

@@ -117,7 +117,9 @@ impl<'a> Stepper<'a> {
             }
             x.copy_from_slice(&self.start[0]);
             let length = self.length / f64::from(1_u32 << halvings);
-            if !self.may_decay && self.decay.find(x, inputs[0], length) {
+            // A state that does not decay at the start of the step may decay later in it.
+            let mut is_stiff = || self.decay.find(x, inputs[0], length) || halvings == MOST;
+            if !self.may_decay && is_stiff() {
                 self.may_decay = true;
             } else {
                 self.halvings += 1;

@@ -1,0 +1,159 @@
+//! Records of machines, by a simulator of their own: their laws are not those of the catalogue to the letter.
+
+use std::f64::consts::TAU;
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::discover::{discover, noise};
+
+/// A column of a record: its channel, its noise (standard deviation in units of the channel) and its samples.
+type Column<'a> = (&'a str, f64, Vec<f64>);
+
+/// Writes the channels and the runs of a campaign after its head, the last run held out.
+fn write(folder: &Path, head: &str, (rate, is_held): (f64, bool), runs: Vec<Vec<Column>>) {
+    let mut manifest = head.to_owned();
+    let (mut noise, last) = (noise(), runs.len() - 1);
+    for (place, columns) in runs.into_iter().enumerate() {
+        let role = if place == last { "held_out" } else { "fit" };
+        manifest += &format!(
+            "\n[[run]]\nkind = \"time_history\"\nfile = \"run_{place}.csv\"\nrole = \"{role}\"\nsample_rate = {rate:?}\n\
+             band_limited = {}\n",
+            !is_held
+        );
+        let names: Vec<&str> = columns.iter().map(|(name, ..)| *name).collect();
+        let mut table = format!("time,{}\n", names.join(","));
+        for sample in 0..columns[0].2.len() {
+            write!(table, "{}", sample as f64 / rate).expect("a text");
+            for (_, level, samples) in &columns {
+                write!(table, ",{}", samples[sample] + level * 12.0_f64.sqrt() * noise()).expect("a text");
+            }
+            table.push('\n');
+        }
+        fs::write(folder.join(format!("run_{place}.csv")), table).expect("a record");
+    }
+    fs::write(folder.join("campaign.toml"), manifest).expect("a manifest");
+}
+
+fn channel(name: &str, location: &str, axis: &str, quantity: &str, unit: &str) -> String {
+    format!(
+        "\n[[channel]]\nname = \"{name}\"\nlocation = \"{location}\"\nside = \"centre\"\naxis = \"{axis}\"\n\
+         quantity = \"{quantity}\"\nunit = \"{unit}\"\n"
+    )
+}
+
+fn parameter(name: &str, value: f64, unit: &str, (low, high): (f64, f64)) -> String {
+    format!("\n[parameters.{name}]\nvalue = {value:?}\nunit = \"{unit}\"\nrange = [{low:?}, {high:?}]\nfit = true\n")
+}
+
+/// Classical Runge-Kutta steps of `h` (s) from rest under an input that is held for `every` steps. Returns the states and
+/// the input at the beginning of each such interval.
+fn integrate<const N: usize>(
+    rates: impl Fn(f64, [f64; N], f64) -> [f64; N],
+    input: impl Fn(f64, [f64; N]) -> f64,
+    (h, every, count): (f64, usize, usize),
+) -> Vec<([f64; N], f64)> {
+    let (mut x, mut u, mut kept) = ([0.0; N], 0.0, Vec::new());
+    for step in 0..every * count {
+        let t = step as f64 * h;
+        if step % every == 0 {
+            u = input(t, x);
+            kept.push((x, u));
+        }
+        let moved = |by: f64, slope: [f64; N]| std::array::from_fn(|i| x[i] + by * slope[i]);
+        let a = rates(t, x, u);
+        let b = rates(t + h / 2.0, moved(h / 2.0, a), u);
+        let c = rates(t + h / 2.0, moved(h / 2.0, b), u);
+        let d = rates(t + h, moved(h, c), u);
+        x = std::array::from_fn(|i| x[i] + h / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]));
+    }
+    kept
+}
+
+/// A carriage of 95 kg under position control, on a rail with 200 N s/m of drag and a dry friction of 25 N that is a
+/// sharp function of the speed, without any travel before it slips. The catalogue's friction is stiff before it slips: so
+/// stiff here that its force decays within a hundredth of a step.
+#[test]
+fn a_friction_without_travel_before_it_slips_is_named() {
+    let reference = |f: f64, t: f64| 0.08 * (TAU * f * t).sin() + 0.02 * (TAU * (2.2 - f) * t + 1.0).sin();
+    let control = |f: f64, t: f64, [x, v]: [f64; 2]| {
+        let (there, later) = (reference(f, t), reference(f, t + 1e-4));
+        2e4 * (there - x) + 1500.0 * ((later - there) / 1e-4 - v)
+    };
+    let runs = [0.25, 0.35, 0.45].map(|f| {
+        let rates = |_: f64, x: [f64; 2], force: f64| {
+            let friction = 25.0 * (x[1] / 1e-4).tanh();
+            [x[1], (force - 200.0 * x[1] - friction) / 95.0]
+        };
+        let motion = integrate(rates, |t, x| control(f, t, x), (1e-4, 40, 2000));
+        vec![
+            ("force", 1.0, motion.iter().map(|(_, force)| *force).collect()),
+            ("position", 2e-5, motion.iter().map(|(x, _)| x[0]).collect()),
+        ]
+    });
+    let head = [
+        "format = 1\nname = \"rail\"\nmodel = \"screw_drive\"\n".to_owned(),
+        parameter("m_body", 80.0, "kg", (40.0, 200.0)),
+        parameter("c_body", 300.0, "N s/m", (20.0, 2000.0)),
+        parameter("f_offset", 0.0, "N", (-20.0, 20.0)),
+        channel("force", "motor", "x", "force", "N"),
+        channel("position", "body", "x", "displacement", "m"),
+    ];
+    let folder = tempfile::tempdir().expect("a folder");
+    write(folder.path(), &head.concat(), (250.0, true), runs.into());
+    let answer = discover(folder.path(), None);
+    is_found(&answer, "coulomb_friction", &[("f_coulomb", 25.0, 0.02)]);
+}
+
+/// A damper on a crank: 3 kN s/m up to 400 N, 800 N s/m beyond, and 400 N/mm in series. Without both slopes in one effect
+/// with the compliance, a delay of the rod stood for the compliance.
+#[test]
+fn a_compliant_damper_with_two_slopes_is_named() {
+    let rod = |(size, f): (f64, f64), t: f64| size * ((TAU * f * t).sin() + 0.1 * (2.0 * TAU * f * t).cos());
+    let runs = [(0.02, 0.5), (0.02, 1.5), (0.03, 2.5), (0.025, 2.0)].map(|crank| {
+        let force = |t: f64, end: f64| 4e5 * (rod(crank, t) - rod(crank, 0.0) - end);
+        let rates = |t: f64, [end]: [f64; 1], _: f64| {
+            let force = force(t, end);
+            let beyond = (force.abs() - 400.0).max(0.0);
+            [force.signum() * ((force.abs() - beyond) / 3000.0 + beyond / 800.0)]
+        };
+        let motion = integrate(rates, |t, _| rod(crank, t) - rod(crank, 0.0), (2.5e-4, 20, 600));
+        let forces = motion.iter().map(|([end], rod)| 4e5 * (rod - end) + 80.0);
+        vec![
+            ("rod", 1e-5, motion.iter().map(|(_, rod)| *rod).collect()),
+            ("force", 3.0, forces.collect()),
+        ]
+    });
+    let head = [
+        "format = 1\nname = \"crank\"\nmodel = \"linear_damper\"\n".to_owned(),
+        parameter("c_damper", 3000.0, "N s/m", (100.0, 1e5)),
+        parameter("k_damper", 1000.0, "N/m", (1.0, 1e5)),
+        parameter("f_offset", 100.0, "N", (-500.0, 500.0)),
+        channel("rod", "rod", "z", "displacement", "m"),
+        channel("force", "damper", "z", "force", "N"),
+    ];
+    let folder = tempfile::tempdir().expect("a folder");
+    write(folder.path(), &head.concat(), (200.0, false), runs.into());
+    let answer = discover(folder.path(), None);
+    let truth = [
+        ("k_series", 4e5, 0.05),
+        ("c_rebound", 3000.0, 0.03),
+        ("v_knee", 0.1333, 0.05),
+        ("slope_beyond", 0.2667, 0.05),
+    ];
+    is_found(&answer, "compliant_digressive_damper", &truth);
+}
+
+/// Asserts that one effect is found, with these parameters within these relative errors.
+fn is_found(answer: &Value, name: &str, parameters: &[(&str, f64, f64)]) {
+    assert_eq!(answer["verdict"], "found", "{answer}");
+    assert_eq!(answer["effects"].as_array().map(Vec::len), Some(1), "{answer}");
+    let effect = &answer["effects"][0];
+    assert_eq!(effect["name"], name, "{answer}");
+    for (parameter, value, within) in parameters {
+        let found = effect["parameters"][parameter].as_f64().expect("a number");
+        assert!((found / value - 1.0).abs() < *within, "{parameter} is {found}, not {value}");
+    }
+}
