@@ -9,7 +9,7 @@ use flate2::read::GzDecoder;
 use super::studied::Studied;
 
 const SHIPPED: &str = "models/campaigns/mr_damper";
-/// Four seconds, four turns of the crank: a search takes a fifteenth of the time that it takes with all 15 s.
+/// Four seconds, up to four turns of the crank: a search takes a fifteenth of the time that it takes with all 15 s.
 const SAMPLES: usize = 400;
 
 /// A study of the first seconds of each record.
