@@ -22,7 +22,7 @@ fn force(size: f64, run: usize, t: f64) -> f64 {
 
 /// First state at each sample, from rest, with steps far shorter than a sample.
 fn simulated<const N: usize>(rates: impl Fn([f64; N], f64) -> [f64; N], force: impl Fn(f64) -> f64) -> Vec<f64> {
-    const SAMPLES: usize = 1600;
+    const SAMPLES: usize = 800;
     const FINER: usize = 20;
     let h = 1.0 / (RATE * FINER as f64);
     let (mut x, mut samples) = ([0.0; N], Vec::new());

@@ -96,6 +96,13 @@ fn discovered(campaign: &str) -> Value {
     serde_json::from_str(&succeeds(&["discover", campaign, "--format", "json"])).unwrap()
 }
 
+/// What a search with results in `out` has printed, and its answer.
+fn discovered_into(out: &Path, campaign: &str) -> (String, Value) {
+    let said = succeeds(&["discover", campaign, "--out", out.to_str().unwrap()]);
+    let answer = fs::read_to_string(out.join("discovery.json")).unwrap();
+    (said, serde_json::from_str(&answer).unwrap())
+}
+
 /// Every verb that estimates must say so rather than leave such a parameter at its start.
 #[test]
 fn what_is_to_be_fitted_without_any_range_is_refused() {
@@ -288,14 +295,13 @@ fn a_record_that_starts_in_motion_needs_no_input() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().to_str().unwrap();
     decaying_campaign(folder.path());
-    let answer = discovered(path);
+    let (found, answer) = discovered_into(&folder.path().join("out"), path);
     assert_eq!(answer["verdict"], "none", "{answer}");
     for role in ["fit", "held_out"] {
         let gap = answer["gap"][role]["before"].as_f64().unwrap();
         assert!(gap < 0.1, "{role}: {gap}");
     }
     assert!(answer["notices"].to_string().contains("no input"), "{answer}");
-    let found = succeeds(&["discover", path, "--out", folder.path().join("out").to_str().unwrap()]);
     let values = fs::read_to_string(folder.path().join("out/parameters.toml")).unwrap();
     for (name, truth) in [("c_body", 3.0), ("k_body", 800.0)] {
         let own = values.lines().find_map(|line| line.strip_prefix(&format!("{name} = ")));
@@ -316,12 +322,11 @@ fn an_offset_is_told_and_counted_once() {
     let mut columns = pushed();
     columns[1].1.iter_mut().for_each(|z| *z += 2e-4);
     recorded_campaign(folder.path(), &parameters, &columns);
-    let answer = discovered(path);
+    let (said, answer) = discovered_into(&out, path);
     let own = &answer["offsets"][0];
     assert_eq!((&own["channel"], &own["unit"]), (&"body_z".into(), &"m".into()));
     let (offset, error) = (own["offset"].as_f64().unwrap(), own["stderr"].as_f64().unwrap());
     assert!((offset - 2e-4).abs() < 3.0 * error && error < 4e-5, "{own}");
-    let said = succeeds(&["discover", path, "--out", out.to_str().unwrap()]);
     assert!(said.contains("zero offsets of the sensors of records"), "{said}");
     let file = fs::read_to_string(out.join("parameters.toml")).unwrap();
     assert!(file.contains("# offset of body_z displacement: "), "{file}");
@@ -448,16 +453,15 @@ fn bounds_and_spans_of_time_are_told_as_such() {
         let range = format!("range = [0.5, {most}]\n");
         let parameters = known.replace("true", "false") + &parameter("c_body", 1.0, "N s/m", &range);
         pushed_campaign(folder.path(), "one_mass", &parameters);
-        succeeds(&["discover", path, "--out", out.to_str().unwrap()])
+        discovered_into(&out, path)
     };
-    let said = bounded(2.99);
+    let (said, answer) = bounded(2.99);
     assert!(said.contains("c_body is at the upper end of its range"), "{said}");
     let file = fs::read_to_string(out.join("parameters.toml")).unwrap();
     let told = |line: &str| line.starts_with("c_body = 2.9") && line.ends_with(" # at the upper end of its range");
     assert!(file.lines().any(told), "{file}");
-    let answer: Value = serde_json::from_str(&fs::read_to_string(out.join("discovery.json")).unwrap()).unwrap();
     assert_eq!(answer["at_bound"], serde_json::json!({"c_body": "upper"}), "{answer}");
-    let said = bounded(1.5);
+    let (said, _) = bounded(1.5);
     let mut lines = said.lines().skip_while(|line| !line.starts_with("channel  harmonic"));
     let heading: Vec<&str> = lines.next().unwrap().split_whitespace().collect();
     let first: Vec<&str> = lines.next().unwrap().split_whitespace().collect();

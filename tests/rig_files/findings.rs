@@ -141,6 +141,11 @@ fn a_fit_and_a_search_say_it_too() {
     let mut low = sweeps().remove(0);
     samples(&mut low, "FL_Body_Acc_Z")[20_000] = 3.0;
     fs::write(own.join("sweep_0.mf4"), mdf4::file(&[low])).unwrap();
+    // A search of the spoiled sweep alone takes a fraction of the time.
+    let manifest = own.join("campaign.toml");
+    let text = fs::read_to_string(&manifest).unwrap();
+    let runs: Vec<&str> = text.split("[[run]]").take(2).collect();
+    fs::write(manifest, runs.join("[[run]]")).unwrap();
     for verb in ["fit own --starts 1", "discover own --format json"] {
         let (status, said) = qcar(folder.path(), verb);
         assert!(

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 use std::process::Command;
+use std::sync::LazyLock;
 
 use qcar_runtime::campaign::{Campaign, Test};
 use serde_json::Value;
@@ -87,31 +88,37 @@ fn fitted(folder: &Path) -> Fitted {
     fitted.collect()
 }
 
-/// The fit of a campaign in some format, and that of the original without its other runs, whose K&C curves give starts.
-fn both(ending: &str, file: impl Fn(&Group) -> Vec<u8>) -> (Fitted, Fitted) {
+/// The fit of a campaign in some format.
+fn fit_of(ending: &str, file: impl Fn(&Group) -> Vec<u8>) -> Fitted {
     let folder = tempfile::tempdir().unwrap();
-    let (own, plain) = (folder.path().join(ending), folder.path().join("plain"));
-    fs::create_dir_all(&own).unwrap();
-    fs::create_dir_all(plain.join("rig")).unwrap();
+    let own = folder.path().join(ending);
+    fs::create_dir(&own).unwrap();
     fs::write(folder.path().join("rig.toml"), mapping()).unwrap();
     campaign(&own, ending, file);
+    fitted(&own)
+}
+
+/// The fit of the original without its other runs, whose K&C curves give starts: made once for all formats.
+static PLAIN: LazyLock<Fitted> = LazyLock::new(|| {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("rig")).unwrap();
     let text = fs::read_to_string(Path::new(ORIGINAL).join("campaign.toml")).unwrap();
     let sweeps = text.split("[[run]]\nkind = \"bounce\"").next().unwrap();
-    fs::write(plain.join("campaign.toml"), sweeps).unwrap();
+    fs::write(folder.path().join("campaign.toml"), sweeps).unwrap();
     for entry in fs::read_dir(Path::new(ORIGINAL).join("rig")).unwrap().flatten() {
-        fs::copy(entry.path(), plain.join("rig").join(entry.file_name())).unwrap();
+        fs::copy(entry.path(), folder.path().join("rig").join(entry.file_name())).unwrap();
     }
-    (fitted(&own), fitted(&plain))
-}
+    fitted(folder.path())
+});
 
 /// Values in g are rounded once more than those in m/s^2, by 1e-16; the search ends where its own limit of 1e-9 or less
 /// has been reached, from the same start.
 const SAME: f64 = 1e-9;
 
 fn same(ending: &str, file: impl Fn(&Group) -> Vec<u8>) {
-    let (own, plain) = both(ending, file);
-    assert!(own.len() >= 8 && own.len() == plain.len(), "{own:?} {plain:?}");
-    for ((name, value, _), (same_name, original, _)) in own.into_iter().zip(plain) {
+    let own = fit_of(ending, file);
+    assert!(own.len() >= 8 && own.len() == PLAIN.len(), "{own:?} {:?}", *PLAIN);
+    for ((name, value, _), (same_name, original, _)) in own.iter().zip(&*PLAIN) {
         assert_eq!(name, same_name);
         assert!(
             (value / original - 1.0).abs() < SAME,
@@ -169,9 +176,9 @@ fn a_workbook_gives_the_same_fit() {
 /// sensors: no parameter moves by more than a fifth of its standard error.
 #[test]
 fn rpc_gives_the_same_fit_within_its_rounding() {
-    let (own, plain) = both("rsp", rpc::file);
-    assert_eq!(own.len(), plain.len());
-    for ((name, value, _), (_, original, error)) in own.into_iter().zip(plain) {
+    let own = fit_of("rsp", rpc::file);
+    assert_eq!(own.len(), PLAIN.len());
+    for ((name, value, _), (_, original, error)) in own.iter().zip(&*PLAIN) {
         assert!(
             (value - original).abs() < 0.2 * error,
             "{name} is {value}, not {original} ± {error}"
@@ -187,8 +194,8 @@ fn with_samples(group: &Group, samples: impl Fn(&Channel) -> Vec<f64>) -> Group 
 
 /// Checks that RPC III gives the same fit as MAT, which holds the samples in full as RPC III rounds them.
 fn same_as_rounded(rpc: impl Fn(&Group) -> Vec<u8>, rounded: impl Fn(&Group) -> Group) {
-    let (own, _) = both("rsp", rpc);
-    let (other, _) = both("mat", |group| mat5::file(&rounded(group)));
+    let own = fit_of("rsp", rpc);
+    let other = fit_of("mat", |group| mat5::file(&rounded(group)));
     assert!(own.len() >= 8 && own.len() == other.len(), "{own:?} {other:?}");
     for ((name, value, _), (_, same, _)) in own.into_iter().zip(other) {
         assert!((value / same - 1.0).abs() < SAME, "{name} is {value}, not {same}");

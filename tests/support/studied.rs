@@ -101,7 +101,9 @@ fn run<const N: usize>(arguments: [&str; N], out: &Path) -> String {
 fn state(of: &[&Path]) -> String {
     let mut files = Vec::new();
     let mut paths = vec![PathBuf::from(env!("CARGO_BIN_EXE_qcar"))];
-    paths.extend(of.iter().map(|path| Path::new(env!("CARGO_MANIFEST_DIR")).join(path)));
+    // Test programs in other folders call the same file by other names.
+    let whole = |path: &&Path| Path::new(env!("CARGO_MANIFEST_DIR")).join(path).canonicalize().unwrap();
+    paths.extend(of.iter().map(whole));
     while let Some(path) = paths.pop() {
         match path.is_dir() {
             true => paths.extend(fs::read_dir(path).unwrap().map(|entry| entry.unwrap().path())),
