@@ -154,6 +154,9 @@ fn is_found(answer: &Value, name: &str, parameters: &[(&str, f64, f64)]) {
     assert_eq!(effect["name"], name, "{answer}");
     for (parameter, value, within) in parameters {
         let found = effect["parameters"][parameter].as_f64().expect("a number");
-        assert!((found / value - 1.0).abs() < *within, "{parameter} is {found}, not {value}");
+        assert!(
+            (found / value - 1.0).abs() < *within,
+            "{parameter} is {found}, not {value}"
+        );
     }
 }

@@ -824,7 +824,10 @@ fn a_compliant_damper_with_two_slopes_is_its_valves_when_slow_and_its_spring_whe
         let past = (speed.abs() - knee).max(0.0);
         let wanted = c * speed.signum() * (speed.abs() - (1.0 - beyond) * past);
         let found = of_states(&running, &driven(&running, &[(speed, 0.5)]));
-        assert!((found / wanted - 1.0).abs() < 1e-6, "{found} at {speed} m/s, not {wanted}");
+        assert!(
+            (found / wanted - 1.0).abs() < 1e-6,
+            "{found} at {speed} m/s, not {wanted}"
+        );
     }
     let (speed, time) = (1e-4, 5e-3);
     let wanted = rebound * speed * (1.0 - (-k / rebound * time).exp());

@@ -160,13 +160,24 @@ impl<'a> Tangent<'a> {
 
     /// Finds the states that decay within a part, by their fastest rates at its stages.
     fn find_decays(&mut self) {
-        let Self { own, jacobians, weights, .. } = self;
+        let Self {
+            own,
+            jacobians,
+            weights,
+            ..
+        } = self;
         weights.clear();
         for place in 0..jacobians.stages.parts.len() {
             let h = jacobians.stages.parts[place].length;
             let points = || STAGES * place..STAGES * (place + 1);
-            let rate = |nonzero: usize| points().map(|point| jacobians.matrix(nonzero, point)).fold(0.0, f64::min);
-            let decaying = own.iter().map(|&(nonzero, state)| (state, Weights::new(rate(nonzero), h)));
+            let rate = |nonzero: usize| {
+                points()
+                    .map(|point| jacobians.matrix(nonzero, point))
+                    .fold(0.0, f64::min)
+            };
+            let decaying = own
+                .iter()
+                .map(|&(nonzero, state)| (state, Weights::new(rate(nonzero), h)));
             let decaying: Vec<_> = decaying.filter(|(_, own)| own.decays()).collect();
             if decaying.is_empty() {
                 continue;

@@ -52,7 +52,9 @@ impl Loops for Advance<'_> {
                     self.decaying_part(STAGES * place, weights);
                 }
             }
-            self.slopes.iter_mut().for_each(|slope| *slope = slope.map(without_vanished));
+            for slope in &mut *self.slopes {
+                *slope = slope.map(without_vanished);
+            }
         }
     }
 }
