@@ -8,6 +8,7 @@
 //! 2002, equations 26 to 29.
 
 use crate::model::{Matrix, Model};
+use crate::solver::rk4;
 
 /// Longest step times rate of decay for which the classical method lets a state decay; its limit is 2.785 (Hairer,
 /// Wanner, Solving ordinary differential equations II, section IV.2).
@@ -91,68 +92,114 @@ pub struct Decay<'a> {
     own: Vec<(usize, usize)>,
     matrices: Vec<f64>,
     weights: Vec<Weights>,
-    /// The first stage in the middle.
+    /// The remaining slope at the start, and the first stage in the middle.
+    first: Vec<f64>,
     middle: Vec<f64>,
 }
 
 impl<'a> Decay<'a> {
     /// For a model with these parameter values.
     pub fn new(model: &'a dyn Model, p: &'a [f64]) -> Self {
+        let about = model.about();
+        let row = || vec![0.0; about.states.len()];
         Self {
             model,
             p,
             own: own(model),
-            matrices: vec![0.0; model.about().matrices.len()],
+            matrices: vec![0.0; about.matrices.len()],
             weights: Vec::new(),
-            middle: vec![0.0; model.about().states.len()],
+            first: row(),
+            middle: row(),
         }
     }
 
     /// Finds the states that decay within a step of length `h` (s) from `x`. False if there is none.
     pub fn find(&mut self, x: &[f64], u: &[f64], h: f64) -> bool {
+        self.weights.clear();
+        self.weights.resize(x.len(), Weights::new(0.0, h));
+        self.has_faster(x, u, h)
+    }
+
+    /// Takes the rates at a point that are more than twice as fast as the separated ones. The method lets the rest of a
+    /// decay decay only if that is slower than the separated one. False if there is no such rate.
+    fn has_faster(&mut self, x: &[f64], u: &[f64], h: f64) -> bool {
         if self.own.is_empty() {
             return false;
         }
         self.model.matrices(self.p, x, u, &mut self.matrices);
-        self.weights.clear();
-        self.weights.resize(x.len(), Weights::new(0.0, h));
+        let mut is_faster = false;
         for &(nonzero, state) in &self.own {
-            self.weights[state] = Weights::new(self.matrices[nonzero], h);
+            let (there, known) = (self.matrices[nonzero], self.weights[state].rate);
+            let own = Weights::new(there, h);
+            if own.decays() && there < 2.0 * known {
+                self.weights[state] = own;
+                is_faster = true;
+            }
         }
-        self.weights.iter().any(Weights::decays)
+        is_faster
     }
 
-    /// One step from `x`, where the slope is `k[0]`, to `x_end`, where it is `k[4]`, with the weights that were found.
-    /// `derivative` gets the part of the step as an argument.
+    /// One step of length `h` (s) from `x`, where the slope is `k[0]`, to `x_end`, where it is `k[4]`. Decays are separated
+    /// at their rates at the start, or at those in the middle or at the end if these are much faster. `inputs` are those at
+    /// the three. `derivative` gets the part of the step as an argument. Returns true if some decay was separated.
     pub fn step(
         &mut self,
         mut derivative: impl FnMut(f64, &[f64], &mut [f64]),
+        (inputs, h): ([&[f64]; 3], f64),
+        x: &[f64],
+        k: &mut [Vec<f64>; 5],
+        x_end: &mut [f64],
+    ) -> bool {
+        let decays = self.find(x, inputs[0], h);
+        if decays {
+            self.separated(&mut derivative, x, k, x_end);
+        } else {
+            rk4::step(&mut derivative, h, x, k, x_end);
+        }
+        let middle = std::mem::take(&mut self.middle);
+        let is_faster_there = decays && self.has_faster(&middle, inputs[1], h);
+        self.middle = middle;
+        let is_repeated = self.has_faster(x_end, inputs[2], h) || is_faster_there;
+        if is_repeated {
+            self.separated(&mut derivative, x, k, x_end);
+        }
+        decays || is_repeated
+    }
+
+    /// A step with the present weights.
+    fn separated(
+        &mut self,
+        derivative: &mut impl FnMut(f64, &[f64], &mut [f64]),
         x: &[f64],
         k: &mut [Vec<f64>; 5],
         x_end: &mut [f64],
     ) {
-        let weights = &self.weights;
+        let Self {
+            weights, first, middle, ..
+        } = self;
         let remaining = |k: &mut [f64], x: &[f64]| {
-            for ((k, x), own) in k.iter_mut().zip(x).zip(weights) {
+            for ((k, x), own) in k.iter_mut().zip(x).zip(&*weights) {
                 *k -= own.rate * x;
             }
         };
-        remaining(&mut k[0], x);
+        first.copy_from_slice(&k[0][..x.len()]);
+        remaining(first, x);
         for stage in 1..4 {
             for (i, own) in weights.iter().enumerate() {
                 x_end[i] = match stage {
-                    3 => own.last(self.middle[i], k[0][i], k[2][i]),
-                    _ => own.middle(x[i], k[stage - 1][i]),
+                    1 => own.middle(x[i], first[i]),
+                    2 => own.middle(x[i], k[1][i]),
+                    _ => own.last(middle[i], first[i], k[2][i]),
                 };
             }
             if stage == 1 {
-                self.middle.copy_from_slice(x_end);
+                middle.copy_from_slice(x_end);
             }
             derivative(if stage == 3 { 1.0 } else { 0.5 }, x_end, &mut k[stage]);
             remaining(&mut k[stage], x_end);
         }
         for (i, own) in weights.iter().enumerate() {
-            x_end[i] = own.end(x[i], [k[0][i], k[1][i], k[2][i], k[3][i]]);
+            x_end[i] = own.end(x[i], [first[i], k[1][i], k[2][i], k[3][i]]);
         }
         derivative(1.0, x_end, &mut k[4]);
     }
@@ -172,4 +219,60 @@ pub fn own(model: &dyn Model) -> Vec<(usize, usize)> {
     let entries = about.matrices.iter().enumerate();
     let own = entries.filter(|(_, entry)| entry.matrix == Matrix::A && entry.row == entry.column && !about.linear);
     own.map(|(nonzero, entry)| (nonzero, usize::from(entry.row))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Weights;
+
+    /// The state x of x' = r x + b + c t + d t² after a step of 1 s from 1, with the stages of the method.
+    fn after(rate: f64, separated: f64, [b, c, d]: [f64; 3]) -> f64 {
+        let own = Weights::new(separated, 1.0);
+        let slope = |t: f64, x: f64| rate * x + b + c * t + d * t * t - own.rate * x;
+        let first = slope(0.0, 1.0);
+        let one = own.middle(1.0, first);
+        let slope_at_one = slope(0.5, one);
+        let other = own.middle(1.0, slope_at_one);
+        let slope_at_other = slope(0.5, other);
+        let last = own.last(one, first, slope_at_other);
+        own.end(1.0, [first, slope_at_one, slope_at_other, slope(1.0, last)])
+    }
+
+    /// The exact solution: a polynomial of second degree and the decaying rest.
+    fn exact(rate: f64, [b, c, d]: [f64; 3]) -> f64 {
+        let quadratic = -d / rate;
+        let linear = (2.0 * quadratic - c) / rate;
+        let constant = (linear - b) / rate;
+        constant + linear + quadratic + (1.0 - constant) * rate.exp()
+    }
+
+    /// However fast the decay is, the method is exact if the rest is a polynomial of second degree over time.
+    #[test]
+    fn a_separated_decay_is_exact() {
+        for rate in [-2.5, -30.0, -4e3, -1e7] {
+            let rest = [3.0, -5.0, 2.0];
+            let (found, expected) = (after(rate, rate, rest), exact(rate, rest));
+            assert!(
+                (found / expected - 1.0).abs() < 1e-9,
+                "{found}, not {expected} at {rate}/s"
+            );
+        }
+    }
+
+    /// The classical method multiplies a decaying state by 1 + z + z²/2 + z³/6 + z⁴/24.
+    #[test]
+    fn a_slow_decay_is_that_of_the_classical_method() {
+        let z: f64 = -1.3;
+        let expected = 1.0 + z + z.powi(2) / 2.0 + z.powi(3) / 6.0 + z.powi(4) / 24.0;
+        assert!((after(z, z, [0.0; 3]) - expected).abs() < 1e-15);
+    }
+
+    /// A decay that is twice as fast as the separated one still decays.
+    #[test]
+    fn a_decay_of_twice_the_separated_rate_does_not_grow() {
+        for rate in [-2.5, -30.0, -4e3, -1e7] {
+            let found = after(2.0 * rate, rate, [0.0; 3]);
+            assert!(found.abs() < 1.0, "{found} at {rate}/s");
+        }
+    }
 }

@@ -36,7 +36,7 @@ pub struct Stepper<'a> {
     model: &'a dyn Model,
     constants: Vec<f64>,
     decay: Decay<'a>,
-    /// True if states may decay within a step, and if they did in the last part.
+    /// True if states may decay within a step, and if one did in a part of the last one.
     may_decay: bool,
     decays: bool,
     /// Length of a whole step, s.
@@ -162,7 +162,6 @@ impl<'a> Stepper<'a> {
 
     /// Takes a Runge-Kutta step of length `h` (s).
     fn part(&mut self, inputs: [&[f64]; 3], h: f64, x: &mut [f64]) {
-        self.decays = self.may_decay && self.decay.find(x, inputs[0], h);
         let Self {
             model, constants, k, ..
         } = self;
@@ -174,8 +173,8 @@ impl<'a> Stepper<'a> {
         let derivative = |part: f64, x: &[f64], k: &mut [f64]| {
             model.derivative(constants, x, inputs[(2.0 * part) as usize], k);
         };
-        if self.decays {
-            self.decay.step(derivative, x, k, &mut self.x);
+        if self.may_decay {
+            self.decays |= self.decay.step(derivative, (inputs, h), x, k, &mut self.x);
         } else {
             rk4::step(derivative, h, x, k, &mut self.x);
         }
@@ -188,7 +187,7 @@ impl<'a> Stepper<'a> {
         let error = |i: usize| {
             let size = self.largest[i].max(x[i].abs());
             let [last, end] = [self.k[3][i], self.k[4][i]];
-            let error = if self.decays {
+            let error = if self.may_decay {
                 self.decay.error(i, last, end, x[i]).abs()
             } else {
                 (h / 6.0 * (last - end)).abs()

@@ -215,7 +215,6 @@ impl<'a> Tangent<'a> {
 
     /// Advances the motion by the last of the known parts.
     fn part(&mut self, inputs: [&[f64]; 3], length: f64, may_decay: bool) {
-        let decays = may_decay && self.decay.find(&self.x, inputs[0], length);
         let Self { model, constants, .. } = self;
         let stages = &mut self.jacobians.stages;
         let first = STAGES * (stages.parts.len() - 1);
@@ -228,11 +227,13 @@ impl<'a> Tangent<'a> {
                 let u = inputs[(2.0 * c) as usize];
                 model.derivative(constants, x, u, k);
                 stages.put(first + stage, x, u);
-                stage += 1;
             }
+            // A step that is repeated puts its stages again.
+            stage = stage % STAGES + 1;
         };
-        if decays {
-            self.decay.step(derivative, &self.x, &mut self.k, &mut self.x_end);
+        if may_decay {
+            self.decay
+                .step(derivative, (inputs, length), &self.x, &mut self.k, &mut self.x_end);
         } else {
             rk4::step(derivative, length, &self.x, &mut self.k, &mut self.x_end);
         }
