@@ -443,8 +443,8 @@ fn ranges_are_measured_by_the_motion_of_the_place() {
         let own = patched.parameters[0].clone();
         (own.start, own.range)
     };
-    assert_eq!(start(&big), (1800.0, (30.0, 300e3)));
-    assert_eq!(start(&|_| None), (60.0, (1.0, 10e3)));
+    assert_eq!(start(&big), (1800.0, (30.0, 3e6)));
+    assert_eq!(start(&|_| None), (60.0, (1.0, 100e3)));
 }
 
 #[test]
