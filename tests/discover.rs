@@ -1,7 +1,5 @@
 //! What is missing is named, and nothing is invented, on campaigns that a second simulator makes.
 
-#[path = "support/damper.rs"]
-mod damper;
 #[path = "support/studied.rs"]
 mod studied;
 #[path = "support/swept.rs"]
@@ -11,7 +9,6 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use damper::short_damper;
 use qcar_blind::hidden::Hidden;
 use qcar_blind::matrix::cases;
 use qcar_blind::programme::Programme;
@@ -121,7 +118,7 @@ fn dry_friction_and_damping_that_differs_by_direction_are_named_in_a_real_drive(
 /// memory. The record reaches 68 mm/s.
 #[test]
 fn a_saturating_force_with_memory_is_named_in_a_real_damper() {
-    let answer = answer_of(&short_damper());
+    let answer = measured("mr_damper");
     assert_eq!(answer["verdict"], "found", "{answer}");
     let effects = answer["effects"].as_array().expect("effects");
     assert_eq!(effects.len(), 1, "{answer}");
