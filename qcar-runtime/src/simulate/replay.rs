@@ -5,12 +5,12 @@
 
 // Recorded inputs at the nodes of an integration.
 mod input;
-// How the readings of a linear model depend on its initial states.
-mod initial;
 // States that decay within a step.
 mod decay;
 // Steps of the Runge-Kutta method, with step control.
 mod stepper;
+// How the readings of a linear model depend on its initial states.
+mod initial;
 // Derivatives of the signals, integrated with the motion.
 mod tangent;
 
