@@ -118,7 +118,7 @@ fn dry_friction_and_damping_that_differs_by_direction_are_named_in_a_real_drive(
 /// memory. The record reaches 68 mm/s.
 #[test]
 fn a_saturating_force_with_memory_is_named_in_a_real_damper() {
-    let answer = measured("mr_damper");
+    let answer = studied("mr_damper");
     assert_eq!(answer["verdict"], "found", "{answer}");
     let effects = answer["effects"].as_array().expect("effects");
     assert_eq!(effects.len(), 1, "{answer}");

@@ -1,7 +1,5 @@
 //! The report as a reader meets it: in a browser, wide and narrow, light and dark, without a network.
 
-#[path = "../support/damper.rs"]
-mod damper;
 #[path = "../support/studied.rs"]
 mod studied;
 #[path = "../support/swept.rs"]
@@ -26,7 +24,6 @@ use std::process::Command;
 use std::sync::LazyLock;
 
 use browser::{browser_or_word, look};
-use damper::short_damper;
 use serde_json::Value;
 use studied::Studied;
 use swept::two_sensors;
@@ -147,7 +144,7 @@ fn maps_tell_runs_and_axes_apart() {
 #[test]
 fn records_are_drawn_beside_what_the_models_make_of_them() {
     let Some(browser) = browser_or_word() else { return };
-    let study = short_damper();
+    let study = Studied::new("mr_damper");
     let found = look(&browser, &page(&study), 1280, "light");
     let wanted = [
         "record",
