@@ -89,7 +89,7 @@ pub struct Decay<'a> {
     model: &'a dyn Model,
     p: &'a [f64],
     /// Nonzeros of A by which states depend on their own values, with these states.
-    own: Vec<(usize, usize)>,
+    pub own: Vec<(usize, usize)>,
     matrices: Vec<f64>,
     weights: Vec<Weights>,
     /// The remaining slope at the start, and the first stage in the middle.
@@ -214,7 +214,7 @@ impl<'a> Decay<'a> {
 
 /// Nonzeros of A by which states depend on their own values, with these states. None of a linear model: its free
 /// responses are those of the classical method.
-pub fn own(model: &dyn Model) -> Vec<(usize, usize)> {
+fn own(model: &dyn Model) -> Vec<(usize, usize)> {
     let about = model.about();
     let entries = about.matrices.iter().enumerate();
     let own = entries.filter(|(_, entry)| entry.matrix == Matrix::A && entry.row == entry.column && !about.linear);

@@ -27,7 +27,7 @@ const ROOM: f64 = 1.0 / 32.0;
 pub struct Taken {
     /// How often it was halved.
     pub halvings: u8,
-    /// True if the decay of states by their own values was separated.
+    /// True if states may have decayed within a part of it: their decay was separated wherever they did.
     pub decays: bool,
 }
 

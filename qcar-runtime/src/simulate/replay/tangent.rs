@@ -16,7 +16,7 @@ mod effects;
 mod slopes;
 
 use super::Reading;
-use super::decay::{Decay, Weights, own};
+use super::decay::{Decay, Weights};
 use super::stepper::{Taken, within};
 use crate::model::{LANES, Lanes, Model};
 use crate::solver::rk4;
@@ -71,8 +71,6 @@ pub struct Tangent<'a> {
     of_states: Effects,
     of_readings: Effects,
     decay: Decay<'a>,
-    /// Nonzeros of A by which states depend on their own values, with these states.
-    own: Vec<(usize, usize)>,
     jacobians: Jacobians,
     /// Weights of all states in the parts in which one decays.
     weights: Vec<Weights>,
@@ -105,7 +103,6 @@ impl<'a> Tangent<'a> {
             x: vec![0.0; n],
             slopes: vec![[0.0; LANES]; blocks * n],
             decay: Decay::new(model, p),
-            own: own(model),
             of_states,
             of_readings: Effects::on_readings(model, directions, readings),
             jacobians: Jacobians::default(),
@@ -161,7 +158,7 @@ impl<'a> Tangent<'a> {
     /// Finds the states that decay within a part, by their fastest rates at its stages.
     fn find_decays(&mut self) {
         let Self {
-            own,
+            decay,
             jacobians,
             weights,
             ..
@@ -175,7 +172,8 @@ impl<'a> Tangent<'a> {
                     .map(|point| jacobians.matrix(nonzero, point))
                     .fold(0.0, f64::min)
             };
-            let decaying = own
+            let decaying = decay
+                .own
                 .iter()
                 .map(|&(nonzero, state)| (state, Weights::new(rate(nonzero), h)));
             let decaying: Vec<_> = decaying.filter(|(_, own)| own.decays()).collect();

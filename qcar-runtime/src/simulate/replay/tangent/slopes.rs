@@ -1,5 +1,7 @@
 //! The derivatives of the states through the parts of some steps.
 
+use std::array::from_fn;
+
 use super::super::Reading;
 use super::super::decay::Weights;
 use super::effects::Effects;
@@ -110,13 +112,12 @@ impl Advance<'_> {
                 let slope = effects.row(row, (self.jacobians, point), stage, direct);
                 k[of_step][row] = sum(&slope, -own.rate, &stage[row]);
             }
-            let lanes = |at: &dyn Fn(usize) -> f64| std::array::from_fn(at);
             for (row, own) in weights.iter().enumerate() {
                 let (x, k) = (&self.slopes[row], k.each_ref().map(|k| &k[row]));
                 stage[row] = match of_step {
-                    0 | 1 => lanes(&|lane| own.middle(x[lane], k[of_step][lane])),
-                    2 => lanes(&|lane| own.last(middle[row][lane], k[0][lane], k[2][lane])),
-                    _ => lanes(&|lane| own.end(x[lane], k.map(|k| k[lane]))),
+                    0 | 1 => from_fn(|lane| own.middle(x[lane], k[of_step][lane])),
+                    2 => from_fn(|lane| own.last(middle[row][lane], k[0][lane], k[2][lane])),
+                    _ => from_fn(|lane| own.end(x[lane], k.map(|k| k[lane]))),
                 };
             }
             if of_step == 0 {
@@ -140,5 +141,5 @@ fn without_vanished(value: f64) -> f64 {
 /// A row and a multiple of another.
 #[inline(always)]
 fn sum(one: &Lanes, factor: f64, other: &Lanes) -> Lanes {
-    std::array::from_fn(|lane| one[lane] + factor * other[lane])
+    from_fn(|lane| one[lane] + factor * other[lane])
 }
