@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use qcar_dsl::derive::vectors::Vectors;
 use qcar_dsl::evaluate::Evaluator;
-use qcar_dsl::evaluate::arguments::{Arguments, Part, contact_entries, prepared, unprepared};
+use qcar_dsl::evaluate::arguments::{Arguments, Part, prepared, unprepared};
 use qcar_dsl::program::{Program, Programs};
 use qcar_dsl::schedule::Compiled;
 use qcar_model::{About, Contact, Contacts, LANES, Lanes, Model, Points, ResponseMut};
@@ -292,10 +292,7 @@ impl Model for Machine {
         let Some(code) = rolling.and_then(|rolling| self.once(&self.rolling_derivative, &rolling.derivative)) else {
             return self.interpreter.rolling_derivative(constants, x, u, contact, dx);
         };
-        code.run(
-            &prepared(constants, x, u).with(Part::Contact, &contact_entries(contact)),
-            dx,
-        );
+        code.run(&prepared(constants, x, u).with(Part::Contact, &contact.entries()), dx);
     }
 
     fn rolling_outputs(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &Contact, y: &mut [f64]) {
@@ -303,10 +300,7 @@ impl Model for Machine {
         let Some(code) = rolling.and_then(|rolling| self.once(&self.rolling_outputs, &rolling.outputs)) else {
             return self.interpreter.rolling_outputs(constants, x, u, contact, y);
         };
-        code.run(
-            &prepared(constants, x, u).with(Part::Contact, &contact_entries(contact)),
-            y,
-        );
+        code.run(&prepared(constants, x, u).with(Part::Contact, &contact.entries()), y);
     }
 
     fn contact_force_sets(&self, constants: &[Lanes], x: &[Lanes], s: &Lanes, v: &Lanes) -> Lanes {
@@ -336,9 +330,24 @@ impl Model for Machine {
         let Some(code) = rolling.and_then(|rolling| self.sets(&self.rolling_derivative, &rolling.derivative)) else {
             return self.interpreter.rolling_derivative_sets(constants, x, u, contacts, dx);
         };
-        let contact = [contacts.s, contacts.v, contacts.force[0], contacts.force[1]];
         let [constants, x, u] = state_sets((Part::Constants, constants), x, u);
-        code.sets(&[constants, x, u, (Part::Contact, &contact)], dx);
+        code.sets(&[constants, x, u, (Part::Contact, &contacts.entries())], dx);
+    }
+
+    fn rolling_outputs_sets(
+        &self,
+        constants: &[Lanes],
+        x: &[Lanes],
+        u: &[Lanes],
+        contacts: &Contacts,
+        y: &mut [Lanes],
+    ) {
+        let rolling = self.programs.rolling.as_ref();
+        let Some(code) = rolling.and_then(|rolling| self.sets(&self.rolling_outputs, &rolling.outputs)) else {
+            return self.interpreter.rolling_outputs_sets(constants, x, u, contacts, y);
+        };
+        let [constants, x, u] = state_sets((Part::Constants, constants), x, u);
+        code.sets(&[constants, x, u, (Part::Contact, &contacts.entries())], y);
     }
 
     fn alone(&self, link: usize) -> Option<&dyn Model> {

@@ -110,6 +110,9 @@ impl Comparison {
         self.same_rows(about.states.len(), |model, to| {
             model.rolling_derivative_sets(constants, x, u, contacts, to)
         });
+        self.same_rows(about.outputs.len(), |model, to| {
+            model.rolling_outputs_sets(constants, x, u, contacts, to)
+        });
         self.compare_responses_of_sets(constants, &at.positive(19, 3));
     }
 

@@ -17,6 +17,25 @@ pub const LANES: usize = 8;
 /// One value for each of several parameter sets.
 pub type Lanes = [f64; LANES];
 
+impl<T: Copy> Contact<T> {
+    /// Deflection, rate, and the forces in z and x: the order in which programs read them.
+    #[must_use]
+    pub fn entries(&self) -> [T; 4] {
+        [self.s, self.v, self.force[0], self.force[1]]
+    }
+}
+
+impl Contact {
+    /// The contact with these entries, of which there are four.
+    pub(crate) fn of_entries(entries: &[f64]) -> Self {
+        Self {
+            s: entries[0],
+            v: entries[1],
+            force: [entries[2], entries[3]],
+        }
+    }
+}
+
 /// Contacts of the tyres of several parameter sets.
 pub type Contacts = Contact<Lanes>;
 

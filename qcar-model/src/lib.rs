@@ -179,16 +179,27 @@ pub trait Model: Send + Sync {
         contacts: &Contacts,
         dx: &mut [Lanes],
     ) {
-        let contact = [contacts.s, contacts.v, contacts.force[0], contacts.force[1]];
-        let given = [u, &contact].concat();
+        let given = [u, &contacts.entries()].concat();
         one_by_one([constants, x, &given], dx, |constants, x, given, dx| {
             let (u, contact) = given.split_at(u.len());
-            let contact = Contact {
-                s: contact[0],
-                v: contact[1],
-                force: [contact[2], contact[3]],
-            };
-            self.rolling_derivative(constants, x, u, &contact, dx);
+            self.rolling_derivative(constants, x, u, &Contact::of_entries(contact), dx);
+        });
+    }
+
+    /// [`Model::rolling_outputs`] for several prepared parameter sets, each with its own state and contact. The bits are
+    /// the same.
+    fn rolling_outputs_sets(
+        &self,
+        constants: &[Lanes],
+        x: &[Lanes],
+        u: &[Lanes],
+        contacts: &Contacts,
+        y: &mut [Lanes],
+    ) {
+        let given = [u, &contacts.entries()].concat();
+        one_by_one([constants, x, &given], y, |constants, x, given, y| {
+            let (u, contact) = given.split_at(u.len());
+            self.rolling_outputs(constants, x, u, &Contact::of_entries(contact), y);
         });
     }
 

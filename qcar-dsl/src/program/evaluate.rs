@@ -10,7 +10,7 @@ mod code;
 use qcar_model::{About, Contact, Contacts, LANES, Lanes, Model, Points, ResponseMut};
 
 use crate::program::schedule::Compiled;
-use arguments::{Arguments, Part, contact_entries, prepared, unprepared};
+use arguments::{Arguments, Part, prepared, unprepared};
 use code::Code;
 
 /// A compiled model, ready to be evaluated.
@@ -192,7 +192,7 @@ impl Model for Evaluator {
 
     fn rolling_derivative(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &Contact, dx: &mut [f64]) {
         let rolling = self.rolling.as_ref().map(|rolling| &rolling.derivative);
-        let contact = contact_entries(contact);
+        let contact = contact.entries();
         let given = prepared(constants, x, u).with(Part::Contact, &contact);
         rolling.unwrap_or(&self.derivative).run(&given, dx);
     }
@@ -229,7 +229,7 @@ impl Model for Evaluator {
 
     fn rolling_outputs(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &Contact, y: &mut [f64]) {
         let rolling = self.rolling.as_ref().map(|rolling| &rolling.outputs);
-        let contact = contact_entries(contact);
+        let contact = contact.entries();
         let given = prepared(constants, x, u).with(Part::Contact, &contact);
         rolling.unwrap_or(&self.outputs).run(&given, y);
     }

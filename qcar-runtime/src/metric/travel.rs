@@ -133,6 +133,21 @@ impl Model for WithTravel<'_> {
         self.inner.rolling_derivative_sets(constants, x, u, contacts, dx);
     }
 
+    fn rolling_outputs_sets(
+        &self,
+        constants: &[Lanes],
+        x: &[Lanes],
+        u: &[Lanes],
+        contacts: &Contacts,
+        y: &mut [Lanes],
+    ) {
+        let own = &mut y[..self.own()];
+        self.inner.rolling_outputs_sets(constants, x, u, contacts, own);
+        if let Some([wheel, body]) = self.travel {
+            y[self.own()] = std::array::from_fn(|lane| x[wheel][lane] - x[body][lane]);
+        }
+    }
+
     fn rolling_outputs(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &Contact, y: &mut [f64]) {
         self.inner
             .rolling_outputs(constants, x, u, contact, &mut y[..self.own()]);

@@ -213,8 +213,22 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
     /// The inputs of the axle from the contact at time `t`: the forces on the wheel relative to rest, N, in z and x,
     /// and for a tyre with inner states its deflection and rate, m and m/s.
     pub fn given(&self, t: f64, x: &[f64]) -> [f64; 4] {
-        let contact = self.driven(self.contact_at(t, x).unwrap_or_default());
+        self.inputs_of(self.contact_at(t, x))
+    }
+
+    /// The same from a known contact; `None` in the air.
+    pub fn inputs_of(&self, contact: Option<Contact>) -> [f64; 4] {
+        let contact = self.driven(contact.unwrap_or_default());
         [contact.force[0], contact.force[1], contact.s, contact.v]
+    }
+
+    /// The same, computed from what is known of another car in the same state: how its tyre touches the road.
+    pub fn given_beside(&self, (other, touch): (&Self, Option<&Touch>), t: f64, x: &[f64]) -> [f64; 4] {
+        if self.tyre == other.tyre && self.height == other.height {
+            self.inputs_of(touch.map(|touch| self.contact(Some(touch), x)))
+        } else {
+            self.given(t, x)
+        }
     }
 
     /// Indices of the states on which the contact depends, each with a small change for a difference quotient.

@@ -11,6 +11,11 @@
 //! "General sensitivity equations of discontinuous systems", Autom. Remote Control 28, 1967). An output that jumps has
 //! an impulse `(y⁻ - y⁺) dt/dε` in its derivative, which the filter spreads over the samples.
 
+// Difference quotients of the equations of motion.
+mod displaced;
+
+use displaced::{Displaced, Here, STEP};
+
 use super::car::Car;
 use super::failure::SimulateError;
 use super::held::EVENTS;
@@ -30,10 +35,6 @@ pub struct Tangent {
     /// For each direction the derivative of each signal.
     pub slopes: Vec<Vec<Vec<f64>>>,
 }
-
-/// Step of the central difference along a direction. Directions are about as large as the parameters, so the truncation
-/// error is the square of the step, and the rounding error is 1e-16 divided by it.
-const STEP: f64 = 1e-5;
 
 /// Simulates a ride as [`ride`](super::ride()) does, with its derivatives along `directions`, each of which has an
 /// entry for every parameter: the derivative by ε of a ride whose parameters are `p + ε direction`.
@@ -88,7 +89,7 @@ fn along(from: &[f64], direction: &[f64], step: f64) -> Vec<f64> {
 /// A rolling model, and for each direction the models with parameters one step forward and one step backward.
 struct PerturbedModels<'a, M: ?Sized> {
     rolling: Rolling<'a, M>,
-    moved: Vec<[Rolling<'a, M>; 2]>,
+    displaced: Displaced<'a, M>,
     /// Number of states of the model.
     states: usize,
     outputs: usize,
@@ -100,17 +101,6 @@ struct PerturbedModels<'a, M: ?Sized> {
     /// Buffers for a state with its sensitivities, and for the rates and signals of a point.
     state: Vec<f64>,
     rates: Vec<f64>,
-    /// Buffers for the displaced models.
-    neighbour: [Neighbour; 2],
-}
-
-/// A displaced state with its rate and outputs.
-#[derive(Clone)]
-struct Neighbour {
-    x: Vec<f64>,
-    rate: Vec<f64>,
-    outputs: Vec<f64>,
-    force: f64,
 }
 
 impl<'a, M: Model + ?Sized> PerturbedModels<'a, M> {
@@ -122,21 +112,14 @@ impl<'a, M: Model + ?Sized> PerturbedModels<'a, M> {
         grid: Grid,
     ) -> Self {
         let ways = 1 + moved.len();
-        let neighbour = Neighbour {
-            x: vec![0.0; states],
-            rate: vec![0.0; states],
-            outputs: vec![0.0; outputs],
-            force: 0.0,
-        };
         Self {
             tape: Tape::new(grid, ways * (outputs + 1)),
             crossed: None,
             impulses: Vec::new(),
             state: vec![0.0; ways * states],
             rates: vec![0.0; ways * (states + outputs + 1)],
-            neighbour: [neighbour.clone(), neighbour],
+            displaced: Displaced::new(&rolling, moved),
             rolling,
-            moved,
             states,
             outputs,
         }
@@ -163,7 +146,7 @@ impl<'a, M: Model + ?Sized> PerturbedModels<'a, M> {
         };
         Tangent {
             signals: signals(0),
-            slopes: (1..=self.moved.len()).map(signals).collect(),
+            slopes: (1..=self.displaced.moved.len()).map(signals).collect(),
         }
     }
 }
@@ -192,7 +175,7 @@ impl<M: Model + ?Sized> PerturbedModels<'_, M> {
             rolling.held_events(t, &beside).map_or(0.0, |[values, _]| values[event])
         };
         let rate = self.rolling.held_events(t, x).map_or(0.0, |[_, rates]| rates[event]);
-        let ways = self.moved.iter().zip(sensitivities.chunks_exact(self.states));
+        let ways = self.displaced.moved.iter().zip(sensitivities.chunks_exact(self.states));
         let shift = |([up, down], s): (&[Rolling<'_, M>; 2], &[f64])| {
             let slope = (value(up, s, STEP) - value(down, s, -STEP)) / (2.0 * STEP);
             if rate == 0.0 { 0.0 } else { -slope / rate }
@@ -207,7 +190,7 @@ impl<M: Model + ?Sized> PerturbedModels<'_, M> {
             (self.side(t, x), shifts)
         });
         let held = self.rolling.held_at(t, &z[..self.states]);
-        let all = self.moved.iter_mut().flatten().chain([&mut self.rolling]);
+        let all = self.displaced.moved.iter_mut().flatten().chain([&mut self.rolling]);
         all.for_each(|rolling| rolling.held = held);
         let Some((before, shifts)) = crossing else {
             return;
@@ -226,46 +209,27 @@ impl<M: Model + ?Sized> PerturbedModels<'_, M> {
     }
 }
 
-impl Neighbour {
-    /// Evaluates a displaced model in the state `x + step s`.
-    fn look<M: Model + ?Sized>(&mut self, rolling: &Rolling<'_, M>, t: f64, (x, s): (&[f64], &[f64]), step: f64) {
-        for ((own, x), s) in self.x.iter_mut().zip(x).zip(s) {
-            *own = x + step * s;
-        }
-        let contact = rolling.motion(t, &self.x, &mut self.rate, &mut self.outputs);
-        self.force = vertical(contact);
-    }
-}
-
 fn vertical(contact: Option<Contact>) -> f64 {
     contact.map_or(0.0, |contact| contact.force[0])
 }
 
 impl<M: Model + ?Sized> System for PerturbedModels<'_, M> {
+    #[inline(always)]
     fn derivative(&mut self, t: f64, z: &[f64], dz: &mut [f64]) {
         let (x, sensitivities) = z.split_at(self.states);
         let (rates, signals) = dz.split_at_mut(z.len());
         let (rate, rates) = rates.split_at_mut(self.states);
         let (signal, signals) = signals.split_at_mut(self.outputs + 1);
         let (outputs, force) = signal.split_at_mut(self.outputs);
-        force[0] = vertical(self.rolling.motion(t, x, rate, outputs));
-        let ways = self.moved.iter().zip(sensitivities.chunks_exact(self.states));
-        let into = rates
-            .chunks_exact_mut(self.states)
-            .zip(signals.chunks_exact_mut(self.outputs + 1));
-        let [forward, backward] = &mut self.neighbour;
-        let slope = |forward: f64, backward: f64| (forward - backward) / (2.0 * STEP);
-        for (([up, down], s), (rate, signal)) in ways.zip(into) {
-            forward.look(up, t, (x, s), STEP);
-            backward.look(down, t, (x, s), -STEP);
-            for ((rate, forward), backward) in rate.iter_mut().zip(&forward.rate).zip(&backward.rate) {
-                *rate = slope(*forward, *backward);
-            }
-            for ((signal, forward), backward) in signal.iter_mut().zip(&forward.outputs).zip(&backward.outputs) {
-                *signal = slope(*forward, *backward);
-            }
-            signal[self.outputs] = slope(forward.force, backward.force);
-        }
+        let contact = self.rolling.motion(t, x, rate, outputs);
+        force[0] = vertical(contact);
+        let here = Here {
+            rolling: &self.rolling,
+            t,
+            x,
+            given: self.rolling.inputs_of(contact),
+        };
+        self.displaced.slopes(&here, sensitivities, (rates, signals));
     }
 
     fn signals(&self) -> usize {

@@ -25,14 +25,14 @@ use super::rolling::Rolling;
 use super::sampling::{Grid, Tape};
 use super::settings::{Method, Settings};
 use super::tangent::{Tangent, tangent};
-use crate::model::Model;
+use crate::model::{LANES, Model};
 use crate::solver::Hold;
 use crate::tyre::Geometry;
 
 /// Relative tolerance of a motion that is not linear, with its derivatives.
 const TOLERANCE: f64 = 3e-6;
-/// Number of derivatives of such a motion that are integrated together.
-const TOGETHER: usize = 8;
+/// Largest number of derivatives of such a motion that are integrated together.
+const TOGETHER: usize = 4 * LANES;
 /// Number of changes in a direction: a change is some thousandths of a parameter, a direction as large as it.
 const CHANGES: f64 = 300.0;
 
@@ -333,10 +333,11 @@ impl<'a, M: Model + ?Sized> Variation<'a, M> {
     fn vary_given(&mut self) {
         self.given_slopes.iter_mut().for_each(|slopes| slopes.fill(0.0));
         let others = self.directions.iter().map(|own| own.other.as_ref()).enumerate();
-        let mut here = None;
+        let touch = self.rolling.touch(self.time, &self.x);
+        let known = (&self.rolling, touch.as_ref());
+        let here = self.rolling.given_beside(known, self.time, &self.x);
         for (lane, (other, by)) in others.filter_map(|(lane, other)| Some((lane, other?))) {
-            let here = *here.get_or_insert_with(|| self.rolling.given(self.time, &self.x));
-            let own = slope(here, other.given(self.time, &self.x), *by);
+            let own = slope(here, other.given_beside(known, self.time, &self.x), *by);
             self.given_slopes
                 .iter_mut()
                 .zip(own)

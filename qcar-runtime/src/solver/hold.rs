@@ -4,10 +4,12 @@
 //! error, however fast the system is (M. Hochbruck, A. Ostermann, "Exponential integrators", Acta Numerica 19, 2010,
 //! section 2).
 
+use std::array;
+
 use nalgebra::DMatrix;
 
 use super::matrix::Matrix;
-use crate::vectors::{Loops, widest};
+use crate::vectors::{Loops, over_lanes};
 
 /// Effect of a step on states and forces.
 pub struct Hold {
@@ -56,7 +58,7 @@ impl Hold {
     /// Writes the next states of several systems: each state, and each force at both ends of the step, has a value for
     /// every system, one after the other.
     pub fn step(&self, systems: usize, states: &[f64], forces: [&[f64]; 2], next: &mut [f64]) {
-        widest(Step {
+        over_lanes(Step {
             factors: &self.factors,
             systems,
             acting: [states, forces[0], forces[1]],
@@ -73,19 +75,50 @@ struct Step<'a> {
     next: &'a mut [f64],
 }
 
+/// Next states that are computed together: each number that acts on them is loaded once, and their sums do not wait for
+/// each other.
+const STATES: usize = 4;
+
 impl Step<'_> {
-    /// The sums of `N` neighbouring systems, which stay in registers.
+    /// The sums of `R` next states, whose rows of factors are `factors`, for `N` neighbouring systems.
     #[inline(always)]
-    fn sums<const N: usize>(&self, factors: &[f64], from: usize) -> [f64; N] {
-        let mut sums = [0.0; N];
-        let mut factors = factors.iter();
+    fn sums<const R: usize, const N: usize>(&self, factors: [&[f64]; R], from: usize) -> [[f64; N]; R] {
+        let mut sums = [[0.0; N]; R];
+        let mut place = 0;
         for acting in self.acting {
-            for (by, factor) in acting.chunks_exact(self.systems).zip(factors.by_ref()) {
-                let by = &by[from..from + N];
-                (0..N).for_each(|lane| sums[lane] += factor * by[lane]);
+            for by in acting.chunks_exact(self.systems) {
+                let by: &[f64; N] = by[from..].first_chunk().unwrap_or(&[0.0; N]);
+                for (sums, factors) in sums.iter_mut().zip(factors) {
+                    let factor = factors[place];
+                    (0..N).for_each(|lane| sums[lane] += factor * by[lane]);
+                }
+                place += 1;
             }
         }
         sums
+    }
+
+    /// Computes `R` next states from the one in `row` on.
+    #[inline(always)]
+    fn rows<const R: usize>(&mut self, row: usize, width: usize) {
+        let factors: [&[f64]; R] = array::from_fn(|own| &self.factors[(row + own) * width..][..width]);
+        let mut from = 0;
+        while from < self.systems {
+            from += match self.systems - from {
+                8.. => self.write::<R, 8>(factors, (row, from)),
+                4.. => self.write::<R, 4>(factors, (row, from)),
+                _ => self.write::<R, 1>(factors, (row, from)),
+            };
+        }
+    }
+
+    #[inline(always)]
+    fn write<const R: usize, const N: usize>(&mut self, factors: [&[f64]; R], (row, from): (usize, usize)) -> usize {
+        let sums = self.sums::<R, N>(factors, from);
+        for (own, sums) in sums.iter().enumerate() {
+            self.next[(row + own) * self.systems + from..][..N].copy_from_slice(sums);
+        }
+        N
     }
 }
 
@@ -93,25 +126,18 @@ impl Loops for Step<'_> {
     type Result = ();
 
     #[inline(always)]
-    fn run(self) {
+    fn run(mut self) {
         let states = self.next.len() / self.systems;
-        for (row, factors) in self.factors.chunks_exact(self.factors.len() / states).enumerate() {
-            let mut from = 0;
-            while from < self.systems {
-                let place = row * self.systems + from;
-                from += if from + 8 <= self.systems {
-                    let sums = self.sums::<8>(factors, from);
-                    self.next[place..place + 8].copy_from_slice(&sums);
-                    8
-                } else if from + 4 <= self.systems {
-                    let sums = self.sums::<4>(factors, from);
-                    self.next[place..place + 4].copy_from_slice(&sums);
-                    4
-                } else {
-                    self.next[place] = self.sums::<1>(factors, from)[0];
-                    1
-                };
-            }
+        let width = self.factors.len() / states;
+        let mut row = 0;
+        while row < states {
+            row += if row + STATES <= states {
+                self.rows::<STATES>(row, width);
+                STATES
+            } else {
+                self.rows::<1>(row, width);
+                1
+            };
         }
     }
 }

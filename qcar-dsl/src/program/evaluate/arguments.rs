@@ -3,8 +3,6 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use qcar_model::Contact;
-
 use crate::derive::vectors::Vectors;
 use crate::expr::Symbol;
 use crate::program::{Op, Program};
@@ -61,13 +59,6 @@ pub fn unprepared<'a>(p: &'a [f64], x: &'a [f64], u: &'a [f64]) -> Arguments<'a>
 fn moving<'a>(x: &'a [f64], u: &'a [f64]) -> Arguments<'a> {
     Arguments::default().with(Part::States, x).with(Part::Inputs, u)
 }
-
-/// A contact in the order of [`Part::Contact`].
-#[inline]
-pub fn contact_entries(contact: &Contact) -> [f64; 4] {
-    [contact.s, contact.v, contact.force[0], contact.force[1]]
-}
-
 /// The entries of a part that a program reads, in order. They occupy consecutive registers from `first`.
 #[derive(Clone, Debug)]
 pub struct ReadEntries {
