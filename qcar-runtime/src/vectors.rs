@@ -2,6 +2,8 @@
 
 // A single number.
 mod number;
+// A dot product.
+mod dot;
 // The results of a response.
 mod lines;
 // Rows of lanes.
@@ -13,6 +15,7 @@ mod portable;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
+pub(crate) use dot::dot;
 pub use lines::LinesMut;
 pub use number::{sign, table};
 #[cfg(not(target_arch = "x86_64"))]

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::vectors::{Loops, widest};
+use crate::vectors::{Loops, dot, widest};
 
 /// Rows of the Jacobian in one block: twenty columns of them fit in a first-level cache.
 const BLOCK: usize = 192;
@@ -96,23 +96,4 @@ impl Loops for Products<'_> {
             }
         }
     }
-}
-
-/// A dot product with eight independent sums, since one sum cannot be vectorised without reordering it.
-#[inline(always)]
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let (a_chunks, b_chunks) = (a.chunks_exact(8), b.chunks_exact(8));
-    let tail: f64 = a_chunks
-        .remainder()
-        .iter()
-        .zip(b_chunks.remainder())
-        .map(|(a, b)| a * b)
-        .sum();
-    let mut sums = [0.0; 8];
-    for (a, b) in a_chunks.zip(b_chunks) {
-        for lane in 0..8 {
-            sums[lane] += a[lane] * b[lane];
-        }
-    }
-    sums.iter().sum::<f64>() + tail
 }

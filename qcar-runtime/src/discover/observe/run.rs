@@ -10,7 +10,7 @@ mod means;
 mod passage;
 
 pub use band::Band;
-pub use means::Means;
+pub use means::{Means, Pulses};
 pub use passage::Passage;
 pub(super) use passage::{COARSE_POINTS, FINE_POINTS, SEARCH_STEP_LIMIT, STEP_LIMIT};
 pub use restart::{Restart, Spread, measures};

@@ -89,13 +89,9 @@ impl LinearStates {
     /// singular.
     pub fn new(a: DMatrix<f64>, turns: &[Complex<f64>], nonlinear: Vec<usize>) -> Option<Self> {
         let own: Vec<usize> = (0..a.ncols()).filter(|state| !nonlinear.contains(state)).collect();
-        let (among, pushes) = (a.select_columns(&own), a.select_columns(&nonlinear));
-        let inverse = |&turn: &Complex<f64>| {
-            let stiffness = DMatrix::from_diagonal_element(own.len(), own.len(), turn) - among.map(Complex::from);
-            stiffness.lu().try_inverse()
-        };
-        let compliance: Vec<_> = turns.iter().map(inverse).collect::<Option<_>>()?;
-        let pushes = pushes.map(Complex::from);
+        let resolvent = Resolvent::new(&a.select_columns(&own));
+        let compliance: Vec<_> = turns.iter().map(|&turn| resolvent.at(turn)).collect::<Option<_>>()?;
+        let pushes = a.select_columns(&nonlinear).map(Complex::from);
         let following: Vec<_> = compliance.iter().map(|compliance| compliance * &pushes).collect();
         Some(LinearStates {
             rows: rows_of(&own, turns.len()),
@@ -109,6 +105,67 @@ impl LinearStates {
     /// True if these rows and nonlinear states are its own.
     pub fn is_of(&self, a: &DMatrix<f64>, nonlinear: &[usize]) -> bool {
         (&self.of.0, &self.of.1[..]) == (a, nonlinear)
+    }
+}
+
+/// The inverses of `s - A` for one matrix A. About half of the states are positions, whose rows have a single nonzero.
+/// They are eliminated first, which leaves a matrix of half the size.
+struct Resolvent {
+    positions: Vec<usize>,
+    others: Vec<usize>,
+    /// Rates of the positions by the other states, of these by the positions and by themselves, and by the positions
+    /// that follow them.
+    follow: DMatrix<Complex<f64>>,
+    by_positions: DMatrix<Complex<f64>>,
+    by_others: DMatrix<Complex<f64>>,
+    through: DMatrix<Complex<f64>>,
+}
+
+impl Resolvent {
+    fn new(a: &DMatrix<f64>) -> Self {
+        let nonzeros = |row: usize| (0..a.ncols()).filter(move |&column| a[(row, column)] != 0.0);
+        let is_single = |row: usize| nonzeros(row).nth(1).is_none();
+        let is_position = |&row: &usize| is_single(row) && nonzeros(row).all(|column| !is_single(column));
+        let (positions, others): (Vec<usize>, Vec<usize>) = (0..a.nrows()).partition(is_position);
+        let part = |rows: &[usize], columns: &[usize]| {
+            DMatrix::from_fn(rows.len(), columns.len(), |row, column| {
+                Complex::from(a[(rows[row], columns[column])])
+            })
+        };
+        let (follow, by_positions) = (part(&positions, &others), part(&others, &positions));
+        Self {
+            by_others: part(&others, &others),
+            through: &by_positions * &follow,
+            follow,
+            by_positions,
+            positions,
+            others,
+        }
+    }
+
+    /// The inverse at `s`, which is not zero; `None` if the matrix is singular.
+    fn at(&self, s: Complex<f64>) -> Option<DMatrix<Complex<f64>>> {
+        let (m, n) = (self.positions.len(), self.others.len());
+        let once = s.inv();
+        let reduced = DMatrix::from_diagonal_element(n, n, s) - &self.by_others - &self.through * once;
+        let of_others = reduced.lu().try_inverse()?;
+        let by_positions = &of_others * &self.by_positions * once;
+        let follow = &self.follow * &of_others * once;
+        let of_positions = (DMatrix::identity(m, m) + &self.follow * &by_positions) * once;
+        let mut inverse = DMatrix::zeros(m + n, m + n);
+        for (rows, columns, part) in [
+            (&self.others, &self.others, of_others),
+            (&self.others, &self.positions, by_positions),
+            (&self.positions, &self.others, follow),
+            (&self.positions, &self.positions, of_positions),
+        ] {
+            for (place, &column) in columns.iter().enumerate() {
+                for (own, &row) in rows.iter().enumerate() {
+                    inverse[(row, column)] = part[(own, place)];
+                }
+            }
+        }
+        Some(inverse)
     }
 }
 
@@ -216,6 +273,30 @@ mod tests {
                 (&solved - &expected).amax() < 1e-9 * expected.amax(),
                 "{solved} {expected}"
             );
+        }
+    }
+
+    #[test]
+    fn a_resolvent_is_the_inverse_of_the_whole_matrix() {
+        // Two oscillators that are coupled, a position without a velocity among the states, and an inner state.
+        let a = DMatrix::from_row_slice(
+            6,
+            6,
+            &[
+                0.0, 1.0, 0.0, 0.0, 0.0, 0.0, //
+                -9.0, -0.4, 3.0, 0.1, 0.0, 2.0, //
+                0.0, 0.0, 0.0, 1.0, 0.0, 0.0, //
+                2.0, 0.3, -7.0, -0.2, 1.5, 0.0, //
+                0.0, 0.0, 0.0, 0.0, 0.0, 0.0, //
+                0.0, 4.0, 0.0, 0.0, 0.0, -5.0,
+            ],
+        );
+        let resolvent = Resolvent::new(&a);
+        assert_eq!(resolvent.positions, [0, 2, 4]);
+        for s in [Complex::from(1e-3), Complex::new(0.0, 2.7)] {
+            let whole = DMatrix::from_diagonal_element(6, 6, s) - a.map(Complex::from);
+            let error = resolvent.at(s).unwrap() * whole - DMatrix::<Complex<f64>>::identity(6, 6);
+            assert!(error.iter().all(|entry| entry.norm() < 1e-11), "{error}");
         }
     }
 }

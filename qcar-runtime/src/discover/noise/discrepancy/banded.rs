@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use crate::vectors::dot;
+
 /// The lower triangle, row by row.
 #[derive(Clone, Debug)]
 pub struct Banded {
@@ -72,10 +74,6 @@ impl Banded {
     pub fn log_diagonal(&self) -> impl Iterator<Item = f64> {
         self.start[1..].iter().map(|end| self.entries[end - 1].ln())
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]

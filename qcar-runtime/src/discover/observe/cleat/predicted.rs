@@ -7,7 +7,9 @@
 use nalgebra::Complex;
 
 use super::measured::TIMING;
-use crate::discover::observe::{Delay, Evidence, Free, Means, Passage, PredictError, Prediction, Series, signal_of};
+use crate::discover::observe::{
+    Delay, Evidence, Free, Means, Passage, PredictError, Prediction, Pulses, Series, signal_of,
+};
 use crate::model::Model;
 use crate::response::parameters::Values;
 use crate::response::signal::output_of;
@@ -124,8 +126,9 @@ impl Measured<'_> {
     fn predictions(&self, base: &[Vec<f64>], slopes: &[Vec<Vec<f64>>]) -> Vec<Prediction> {
         let shift = self.best_shift(base);
         let here = self.shifted(base, shift);
+        let pulses = self.pulses(shift, base.first().map_or(0, Vec::len));
         let slopes = slopes.iter().map(|records| {
-            let slopes = self.shifted(records, shift).into_iter().map(|(slopes, _)| slopes);
+            let slopes = pulses.iter().zip(records).map(|(pulses, record)| pulses.means(record));
             self.without_shift(slopes.collect(), &here, shift)
         });
         let slopes: Vec<Vec<Vec<f64>>> = slopes.collect();
@@ -155,6 +158,15 @@ impl Measured<'_> {
             means.map(|(mean, slope)| (mean, -slope)).unzip()
         };
         self.series.iter().zip(&self.delays).zip(records).map(read).collect()
+    }
+
+    /// The pulses of each series for records of `samples` samples that begin `shift` (s) later.
+    fn pulses(&self, shift: f64, samples: usize) -> Vec<Pulses> {
+        let of = |(series, delay): (&&Series, &f64)| {
+            let instants = series.at.iter().map(|t| t - shift - delay);
+            self.means.pulses(instants, samples)
+        };
+        self.series.iter().zip(&self.delays).map(of).collect()
     }
 
     /// Share of each sensor's delay that the common shift absorbs, by series; empty if the shift is at its limit.

@@ -9,6 +9,8 @@ use std::f64::consts::PI;
 
 use nalgebra::Complex;
 
+use crate::vectors::{Loops, dot, widest};
+
 /// Smallest number of samples on each side of a mean. With fewer, the pulse does not suppress aliases; with this number
 /// it passes 0.1 % of the alias of 50 Hz.
 const FEWEST: usize = 4;
@@ -60,17 +62,80 @@ impl Means {
 
     /// Mean at `t` (s after the first sample) and its derivative by `t`. Samples beyond the ends count as zero.
     pub fn at(&self, samples: &[f64], t: f64) -> (f64, f64) {
-        let (place, reach) = (t * self.rate, self.reach as f64);
-        let first = (place - reach).ceil().max(0.0) as usize;
-        let last = ((place + reach).floor() + 1.0).clamp(0.0, samples.len() as f64) as usize;
+        let reach = self.reach as f64;
+        let (first, last, mut angle) = self.pulse(t, samples.len());
         let (mut mean, mut slope) = (0.0, 0.0);
-        let mut angle = Complex::cis(PI * (place - first as f64) / reach);
         for sample in samples.iter().take(last).skip(first) {
             mean += sample * (1.0 + angle.re);
             slope -= sample * angle.im;
             angle *= self.turn;
         }
         (mean / (2.0 * reach), slope * PI * self.rate / (2.0 * reach * reach))
+    }
+
+    /// The first sample under the pulse at `t`, the one after the last, and the angle of the pulse at the first.
+    fn pulse(&self, t: f64, samples: usize) -> (usize, usize, Complex<f64>) {
+        let (place, reach) = (t * self.rate, self.reach as f64);
+        let first = (place - reach).ceil().max(0.0) as usize;
+        let last = ((place + reach).floor() + 1.0).clamp(0.0, samples as f64) as usize;
+        (first, last, Complex::cis(PI * (place - first as f64) / reach))
+    }
+
+    /// The pulses at some instants, for many records of `samples` samples.
+    pub fn pulses(&self, instants: impl Iterator<Item = f64>, samples: usize) -> Pulses {
+        let mut pulses = Pulses {
+            ends: Vec::with_capacity(instants.size_hint().0),
+            weights: Vec::new(),
+        };
+        for t in instants {
+            let (first, last, mut angle) = self.pulse(t, samples);
+            pulses.ends.push((first, last));
+            for _ in first..last {
+                pulses.weights.push((1.0 + angle.re) / (2.0 * self.reach as f64));
+                angle *= self.turn;
+            }
+        }
+        pulses
+    }
+}
+
+/// Pulses at several instants.
+pub struct Pulses {
+    /// For each, the first sample under it, and the one after the last.
+    ends: Vec<(usize, usize)>,
+    /// Their weights, one pulse after the other.
+    weights: Vec<f64>,
+}
+
+impl Pulses {
+    /// The means of a record.
+    pub fn means(&self, samples: &[f64]) -> Vec<f64> {
+        let mut means = vec![0.0; self.ends.len()];
+        widest(Weighting {
+            pulses: self,
+            samples,
+            means: &mut means,
+        });
+        means
+    }
+}
+
+struct Weighting<'a> {
+    pulses: &'a Pulses,
+    samples: &'a [f64],
+    means: &'a mut [f64],
+}
+
+impl Loops for Weighting<'_> {
+    type Result = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let mut weights = &self.pulses.weights[..];
+        for (mean, &(first, last)) in self.means.iter_mut().zip(&self.pulses.ends) {
+            let samples = &self.samples[first..last];
+            *mean = dot(samples, weights.split_off(..samples.len()).unwrap_or_default());
+        }
     }
 }
 
@@ -91,9 +156,12 @@ mod tests {
                     .sum()
             };
             // Pulses inside the record and across either end of it.
-            for t in [0.3 * half, 3.37 * half, samples.len() as f64 / rate - 0.21 * half] {
+            let instants = [0.3 * half, 3.37 * half, samples.len() as f64 / rate - 0.21 * half];
+            let by_pulses = means.pulses(instants.into_iter(), samples.len()).means(&samples);
+            for (t, by_pulse) in instants.into_iter().zip(by_pulses) {
                 let (found, expected) = (means.at(&samples, t), (sum(&pulse, t), sum(&slope, t)));
                 assert!((found.0 - expected.0).abs() < 1e-11, "{found:?}, not {expected:?}");
+                assert!((by_pulse - expected.0).abs() < 1e-11, "{by_pulse}, not {expected:?}");
                 assert!(
                     (found.1 - expected.1).abs() < 1e-11 / half,
                     "{found:?}, not {expected:?}"
