@@ -10,10 +10,10 @@ use serde_json::Value;
 use crate::discover::{discover, noise};
 
 /// A column of a record: its channel, its noise (standard deviation in units of the channel) and its samples.
-type Column<'a> = (&'a str, f64, Vec<f64>);
+pub type Column<'a> = (&'a str, f64, Vec<f64>);
 
 /// Writes the channels and the runs of a campaign after its head, the last run held out.
-fn write(folder: &Path, head: &str, (rate, is_held): (f64, bool), runs: Vec<Vec<Column>>) {
+pub fn write(folder: &Path, head: &str, (rate, is_held): (f64, bool), runs: Vec<Vec<Column>>) {
     let mut manifest = head.to_owned();
     let (mut noise, last) = (noise(), runs.len() - 1);
     for (place, columns) in runs.into_iter().enumerate() {
@@ -37,20 +37,20 @@ fn write(folder: &Path, head: &str, (rate, is_held): (f64, bool), runs: Vec<Vec<
     fs::write(folder.join("campaign.toml"), manifest).expect("a manifest");
 }
 
-fn channel(name: &str, location: &str, axis: &str, quantity: &str, unit: &str) -> String {
+pub fn channel(name: &str, location: &str, axis: &str, quantity: &str, unit: &str) -> String {
     format!(
         "\n[[channel]]\nname = \"{name}\"\nlocation = \"{location}\"\nside = \"centre\"\naxis = \"{axis}\"\n\
          quantity = \"{quantity}\"\nunit = \"{unit}\"\n"
     )
 }
 
-fn parameter(name: &str, value: f64, unit: &str, (low, high): (f64, f64)) -> String {
+pub fn parameter(name: &str, value: f64, unit: &str, (low, high): (f64, f64)) -> String {
     format!("\n[parameters.{name}]\nvalue = {value:?}\nunit = \"{unit}\"\nrange = [{low:?}, {high:?}]\nfit = true\n")
 }
 
 /// Classical Runge-Kutta steps of `h` (s) from rest under an input that is held for `every` steps. Returns the states and
 /// the input at the beginning of each such interval.
-fn integrate<const N: usize>(
+pub fn integrate<const N: usize>(
     rates: impl Fn(f64, [f64; N], f64) -> [f64; N],
     input: impl Fn(f64, [f64; N]) -> f64,
     (h, every, count): (f64, usize, usize),
