@@ -1,5 +1,6 @@
 //! A model whose tyre rolls over a road: the right-hand side of thesis figure 3.2.
 
+use std::array;
 use std::cell::Cell;
 
 use super::car::Car;
@@ -43,6 +44,9 @@ pub(super) struct Rolling<'a, M: ?Sized> {
     /// Position from which the force is smooth except at edges, m: a point contact responds to each piece of the road.
     pub smooth_from: f64,
 }
+
+/// Number of inputs of an axle from its contact: forces in z and x, deflection and rate.
+pub(super) const GIVEN: usize = 4;
 
 /// Changes of a position, m, and of a velocity, m/s, for difference quotients of the contact's force: large enough that
 /// rounding is negligible, and far below the deflection of any tyre.
@@ -212,18 +216,18 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
 
     /// The inputs of the axle from the contact at time `t`: the forces on the wheel relative to rest, N, in z and x,
     /// and for a tyre with inner states its deflection and rate, m and m/s.
-    pub fn given(&self, t: f64, x: &[f64]) -> [f64; 4] {
+    pub fn given(&self, t: f64, x: &[f64]) -> [f64; GIVEN] {
         self.inputs_of(self.contact_at(t, x))
     }
 
     /// The same from a known contact; `None` in the air.
-    pub fn inputs_of(&self, contact: Option<Contact>) -> [f64; 4] {
+    pub fn inputs_of(&self, contact: Option<Contact>) -> [f64; GIVEN] {
         let contact = self.driven(contact.unwrap_or_default());
         [contact.force[0], contact.force[1], contact.s, contact.v]
     }
 
     /// The same, computed from what is known of another car in the same state: how its tyre touches the road.
-    pub fn given_beside(&self, (other, touch): (&Self, Option<&Touch>), t: f64, x: &[f64]) -> [f64; 4] {
+    pub fn given_beside(&self, (other, touch): (&Self, Option<&Touch>), t: f64, x: &[f64]) -> [f64; GIVEN] {
         if self.tyre == other.tyre && self.height == other.height {
             self.inputs_of(touch.map(|touch| self.contact(Some(touch), x)))
         } else {
@@ -368,7 +372,7 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
 
     /// The inputs of the model from a contact. Without contact, the force is zero and the tyre's link is at rest.
     #[inline]
-    fn contact(&self, touch: Option<&Touch>, x: &[f64]) -> Contact {
+    pub fn contact(&self, touch: Option<&Touch>, x: &[f64]) -> Contact {
         let law = |s: f64, v: f64| self.model.contact_force(&self.constants, x, s, v);
         touch.map_or(Contact::default(), |touch| match self.held {
             Some(_) => touch.continued_force(law),
@@ -384,6 +388,11 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
         contact.force[1] += self.traction;
         contact
     }
+}
+
+/// Difference quotient of the inputs from a contact.
+pub(super) fn slope(from: [f64; GIVEN], to: [f64; GIVEN], by: f64) -> [f64; GIVEN] {
+    array::from_fn(|input| (to[input] - from[input]) / by)
 }
 
 fn edges(geometry: Geometry, road: &Road) -> Vec<[f64; 2]> {

@@ -23,7 +23,7 @@ use super::ride::{Drive, oversampling};
 use super::rolling::Rolling;
 use super::sampling::{Grid, Tape};
 use super::settings::{Method, Settings, scales};
-use crate::model::{Contact, Model};
+use crate::model::Model;
 use crate::solver::{self, After, DormandPrince, Event, Step, System};
 
 /// A ride, and its derivatives.
@@ -209,10 +209,6 @@ impl<M: Model + ?Sized> PerturbedModels<'_, M> {
     }
 }
 
-fn vertical(contact: Option<Contact>) -> f64 {
-    contact.map_or(0.0, |contact| contact.force[0])
-}
-
 impl<M: Model + ?Sized> System for PerturbedModels<'_, M> {
     #[inline(always)]
     fn derivative(&mut self, t: f64, z: &[f64], dz: &mut [f64]) {
@@ -221,12 +217,16 @@ impl<M: Model + ?Sized> System for PerturbedModels<'_, M> {
         let (rate, rates) = rates.split_at_mut(self.states);
         let (signal, signals) = signals.split_at_mut(self.outputs + 1);
         let (outputs, force) = signal.split_at_mut(self.outputs);
-        let contact = self.rolling.motion(t, x, rate, outputs);
-        force[0] = vertical(contact);
+        let touch = self.rolling.touch(t, x);
+        let contact = touch.as_ref().map(|touch| self.rolling.contact(Some(touch), x));
+        let driven = self.rolling.driven(contact.unwrap_or_default());
+        self.rolling.move_by(&driven, x, rate, outputs);
+        force[0] = contact.map_or(0.0, |contact| contact.force[0]);
         let here = Here {
             rolling: &self.rolling,
             t,
             x,
+            touch: touch.as_ref(),
             given: self.rolling.inputs_of(contact),
         };
         self.displaced.slopes(&here, sensitivities, (rates, signals));

@@ -16,12 +16,12 @@ use std::array;
 use nalgebra::{DMatrix, Matrix4, Vector4};
 use rayon::prelude::*;
 
-use matrices::{Axle, Direction, GIVEN, forced, slopes_at_rest};
+use matrices::{Axle, Direction, forced, slopes_at_rest};
 
 use super::car::Car;
 use super::failure::SimulateError;
 use super::ride::Drive;
-use super::rolling::Rolling;
+use super::rolling::{GIVEN, Rolling, slope};
 use super::sampling::{Grid, Tape};
 use super::settings::{Method, Settings};
 use super::tangent::{Tangent, tangent};
@@ -163,10 +163,6 @@ impl ContactInputs {
             given,
         }
     }
-}
-
-fn slope(from: [f64; GIVEN], to: [f64; GIVEN], by: f64) -> [f64; GIVEN] {
-    array::from_fn(|axis| (to[axis] - from[axis]) / by)
 }
 
 /// Adds a multiple of numbers to others; zero factors, the most frequent ones, are skipped.
@@ -333,11 +329,15 @@ impl<'a, M: Model + ?Sized> Variation<'a, M> {
     fn vary_given(&mut self) {
         self.given_slopes.iter_mut().for_each(|slopes| slopes.fill(0.0));
         let others = self.directions.iter().map(|own| own.other.as_ref()).enumerate();
-        let touch = self.rolling.touch(self.time, &self.x);
-        let known = (&self.rolling, touch.as_ref());
-        let here = self.rolling.given_beside(known, self.time, &self.x);
+        let mut known = None;
         for (lane, (other, by)) in others.filter_map(|(lane, other)| Some((lane, other?))) {
-            let own = slope(here, other.given_beside(known, self.time, &self.x), *by);
+            let (touch, here) = known.get_or_insert_with(|| {
+                let touch = self.rolling.touch(self.time, &self.x);
+                let contact = touch.as_ref().map(|touch| self.rolling.contact(Some(touch), &self.x));
+                (touch, self.rolling.inputs_of(contact))
+            });
+            let there = other.given_beside((&self.rolling, touch.as_ref()), self.time, &self.x);
+            let own = slope(*here, there, *by);
             self.given_slopes
                 .iter_mut()
                 .zip(own)

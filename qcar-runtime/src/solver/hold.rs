@@ -87,7 +87,7 @@ impl Step<'_> {
         let mut place = 0;
         for acting in self.acting {
             for by in acting.chunks_exact(self.systems) {
-                let by: &[f64; N] = by[from..].first_chunk().unwrap_or(&[0.0; N]);
+                let by = &by[from..][..N];
                 for (sums, factors) in sums.iter_mut().zip(factors) {
                     let factor = factors[place];
                     (0..N).for_each(|lane| sums[lane] += factor * by[lane]);

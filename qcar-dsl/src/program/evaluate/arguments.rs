@@ -59,6 +59,7 @@ pub fn unprepared<'a>(p: &'a [f64], x: &'a [f64], u: &'a [f64]) -> Arguments<'a>
 fn moving<'a>(x: &'a [f64], u: &'a [f64]) -> Arguments<'a> {
     Arguments::default().with(Part::States, x).with(Part::Inputs, u)
 }
+
 /// The entries of a part that a program reads, in order. They occupy consecutive registers from `first`.
 #[derive(Clone, Debug)]
 pub struct ReadEntries {

@@ -113,11 +113,13 @@ impl LinearStates {
 struct Resolvent {
     positions: Vec<usize>,
     others: Vec<usize>,
-    /// Rates of the positions by the other states, of these by the positions and by themselves, and by the positions
-    /// that follow them.
+    /// Part of A with the rows of the positions and the columns of the other states.
     follow: DMatrix<Complex<f64>>,
+    /// Part with the rows of the other states and the columns of the positions.
     by_positions: DMatrix<Complex<f64>>,
+    /// Part with the rows and columns of the other states.
     by_others: DMatrix<Complex<f64>>,
+    /// Product of `by_positions` and `follow`.
     through: DMatrix<Complex<f64>>,
 }
 
@@ -146,12 +148,12 @@ impl Resolvent {
     /// The inverse at `s`, which is not zero; `None` if the matrix is singular.
     fn at(&self, s: Complex<f64>) -> Option<DMatrix<Complex<f64>>> {
         let (m, n) = (self.positions.len(), self.others.len());
-        let once = s.inv();
-        let reduced = DMatrix::from_diagonal_element(n, n, s) - &self.by_others - &self.through * once;
+        let over_s = s.inv();
+        let reduced = DMatrix::from_diagonal_element(n, n, s) - &self.by_others - &self.through * over_s;
         let of_others = reduced.lu().try_inverse()?;
-        let by_positions = &of_others * &self.by_positions * once;
-        let follow = &self.follow * &of_others * once;
-        let of_positions = (DMatrix::identity(m, m) + &self.follow * &by_positions) * once;
+        let by_positions = &of_others * &self.by_positions * over_s;
+        let follow = &self.follow * &of_others * over_s;
+        let of_positions = (DMatrix::identity(m, m) + &self.follow * &by_positions) * over_s;
         let mut inverse = DMatrix::zeros(m + n, m + n);
         for (rows, columns, part) in [
             (&self.others, &self.others, of_others),

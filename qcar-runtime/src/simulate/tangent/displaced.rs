@@ -4,8 +4,9 @@
 //! The contact with the road takes longer than all else and depends on few states. So its inputs to the axle are
 //! displaced by their derivatives, and only a direction that changes the contact itself has contacts of its own.
 
-use super::super::rolling::Rolling;
+use super::super::rolling::{GIVEN, Rolling, slope};
 use crate::model::{Contacts, LANES, Model};
+use crate::tyre::Touch;
 use crate::vectors::Rows;
 
 /// Step of the central difference along a direction. Directions are about as large as the parameters, so the truncation
@@ -15,15 +16,14 @@ pub const STEP: f64 = 1e-5;
 /// Signs of the steps forward and backward.
 const SIGNS: [f64; 2] = [1.0, -1.0];
 
-/// Number of inputs from a contact.
-const GIVEN: usize = 4;
-
 /// A car in motion.
 pub struct Here<'r, 'a, M: ?Sized> {
     pub rolling: &'r Rolling<'a, M>,
     /// Time, s.
     pub t: f64,
     pub x: &'r [f64],
+    /// How its tyre touches the road; `None` in the air.
+    pub touch: Option<&'r Touch>,
     /// The inputs from its contact.
     pub given: [f64; GIVEN],
 }
@@ -116,8 +116,7 @@ impl<'a, M: Model + ?Sized> Displaced<'a, M> {
     /// Computes the derivatives of the contact's inputs along each direction.
     fn vary_contact(&mut self, here: &Here<'_, 'a, M>, sensitivities: &[f64]) {
         self.given_slopes.fill([0.0; GIVEN]);
-        let touch = here.rolling.touch(here.t, here.x);
-        let known = (here.rolling, touch.as_ref());
+        let known = (here.rolling, here.touch);
         let ways = self.changes_contact.iter().zip(&self.moved).zip(&mut self.given_slopes);
         for ((_, sides), slopes) in ways.filter(|((changes, _), _)| **changes) {
             let [up, down] = sides.each_ref().map(|own| own.given_beside(known, here.t, here.x));
@@ -189,10 +188,6 @@ impl<'a, M: Model + ?Sized> Displaced<'a, M> {
             rates[place] = [0.0; LANES];
         }
     }
-}
-
-fn slope(from: [f64; GIVEN], to: [f64; GIVEN], by: f64) -> [f64; GIVEN] {
-    std::array::from_fn(|input| (to[input] - from[input]) / by)
 }
 
 /// Central differences of a lane.

@@ -3,10 +3,7 @@
 use nalgebra::DMatrix;
 
 use crate::model::{Contact, Model};
-use crate::simulate::rolling::Rolling;
-
-/// Number of inputs from a contact, see [`Rolling::given`].
-pub const GIVEN: usize = 4;
+use crate::simulate::rolling::{GIVEN, Rolling};
 
 /// The matrices of an axle for the rates of its states and for some outputs.
 pub struct Axle {
