@@ -71,6 +71,10 @@ pub struct Options {
     pub cost: f64,
     /// Length of the step relative to the length of `x`, both in scaled variables.
     pub step: f64,
+    /// Reduction of the cost that a full Gauss-Newton step predicts: half the squared Newton decrement (Boyd and
+    /// Vandenberghe, "Convex Optimization", section 9.5.1). If the residuals are in standard deviations, no variable is
+    /// further than `sqrt(2 decrement)` standard errors from the minimum. Zero switches the test off.
+    pub decrement: f64,
     /// Most evaluations of the residual.
     pub evaluations: usize,
 }
@@ -81,6 +85,7 @@ impl Default for Options {
             gradient: 1e-8,
             cost: 1e-10,
             step: 1e-8,
+            decrement: 0.0,
             evaluations: 200,
         }
     }
@@ -260,6 +265,9 @@ impl<'a, P: Problem + ?Sized> Search<'a, P> {
                 return Some(Stop::Evaluations);
             }
             let step = model.step(&self.here.x, self.bounds, self.radius, optimality);
+            if step.predicted < options.decrement && !self.is_on_boundary(&step) {
+                return Some(Stop::Gradient);
+            }
             self.try_step(&step);
             let cost = self.here.cost;
             let reduction = cost - self.trial.cost;
@@ -318,9 +326,14 @@ impl<'a, P: Problem + ?Sized> Search<'a, P> {
         let length = step.scaled.norm();
         if ratio.is_nan() || ratio < 0.25 {
             self.radius = 0.25 * length;
-        } else if ratio > 0.75 && length > 0.95 * self.radius {
+        } else if ratio > 0.75 && self.is_on_boundary(step) {
             self.radius *= 2.0;
         }
+    }
+
+    /// True if the trust region limits the step.
+    fn is_on_boundary(&self, step: &Step) -> bool {
+        step.scaled.norm() > 0.95 * self.radius
     }
 
     fn finish(self, stop: Stop) -> Outcome {

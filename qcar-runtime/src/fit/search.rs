@@ -15,6 +15,7 @@ pub(super) const OPTIONS: Options = Options {
     gradient: 1e-8,
     cost: 1e-9,
     step: 1e-7,
+    decrement: 0.0,
     evaluations: 100,
 };
 

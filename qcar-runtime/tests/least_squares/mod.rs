@@ -18,6 +18,7 @@ const TIGHT: Options = Options {
     gradient: 1e-12,
     cost: 1e-15,
     step: 1e-12,
+    decrement: 0.0,
     evaluations: 2000,
 };
 

@@ -19,6 +19,7 @@ const OPTIONS: Options = Options {
     gradient: 1e-5,
     cost: 1e-6,
     step: 1e-6,
+    decrement: 0.0,
     evaluations: 20,
 };
 /// First step without a standard error, relative to the range.

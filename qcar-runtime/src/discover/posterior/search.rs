@@ -19,6 +19,10 @@ const ERROR_BOUND: f64 = 6.0;
 /// Largest change of a sensor error that is held, in prior standard deviations: the search needs an interval.
 const HELD: f64 = 1e-3;
 
+/// Predicted gain in log posterior density that ends a search: the unknowns are then within a tenth of their standard
+/// errors from the maximum, and the evidence within a hundredth of what one unknown costs or gains by chance.
+const DECREMENT: f64 = 0.005;
+
 impl Posterior<'_> {
     /// Least-squares minimum from `start`.
     pub fn search(&mut self, start: &[f64], evaluations: usize) -> Result<Outcome, PredictError> {
@@ -26,6 +30,7 @@ impl Posterior<'_> {
             gradient: 1e-5,
             cost: 1e-6,
             step: 1e-6,
+            decrement: DECREMENT,
             evaluations,
         };
         self.start = start.to_vec();
