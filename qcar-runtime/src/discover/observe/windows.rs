@@ -91,13 +91,14 @@ fn part(run: &Run, series: &[&Series], window: Range<usize>) -> Option<(Run, Vec
     let half = 0.5 / *rate;
     let compared = time(window.start + ENDS) - half..time(window.end - ENDS) - half;
     let start = time(window.start);
+    let readings = series.iter().flat_map(|series| motion_at(series, start, *rate)).collect();
     let series: Vec<Series> = series.iter().map(|series| inside(series, &compared)).collect();
     if series.iter().any(|own| own.at.len() < FEWEST_VALUES) {
         return None;
     }
     *restarts = vec![Restart {
         sample: 0,
-        readings: series.iter().filter_map(first_reading).collect(),
+        readings,
     }];
     *inputs = Recordings {
         start,
@@ -120,9 +121,37 @@ fn inside(series: &Series, times: &Range<f64>) -> Series {
     own
 }
 
-/// First value of a sensor of a position or a velocity. It differs from the initial state by the motion within a few
-/// samples, for which the initial state is unknown anyway.
-fn first_reading(series: &Series) -> Option<(Point, f64)> {
-    let shows_state = matches!(series.sensor.quantity, Quantity::Displacement | Quantity::Velocity);
-    shows_state.then(|| (series.sensor.clone(), series.value[0].re))
+/// Reading of a sensor of a position or a velocity at a time (s). Of a position also the velocity: the gradient of a
+/// straight line through a sixteenth of a period on either side. `rate` in Hz.
+fn motion_at(series: &Series, time: f64, rate: f64) -> Vec<(Point, f64)> {
+    let here = series.at.partition_point(|at| *at < time - 0.5 / rate);
+    let Some(value) = series.value.get(here) else {
+        return Vec::new();
+    };
+    let known = (series.sensor.clone(), value.re);
+    match series.sensor.quantity {
+        Quantity::Velocity => vec![known],
+        Quantity::Displacement => {
+            let velocity = Point {
+                quantity: Quantity::Velocity,
+                ..series.sensor.clone()
+            };
+            let around = series.half_a_period() / 8.0;
+            let slope = gradient(series, here, (around * rate).max(1.0) as usize);
+            std::iter::once(known)
+                .chain(slope.map(|slope| (velocity, slope)))
+                .collect()
+        }
+        Quantity::Acceleration | Quantity::Force => Vec::new(),
+    }
+}
+
+/// Gradient (1/s) of a straight line through this number of values on either side of one; `None` at the end of the
+/// record.
+fn gradient(series: &Series, here: usize, around: usize) -> Option<f64> {
+    let values = series.value.get(here.checked_sub(around)?..=here + around)?;
+    let times = &series.at[here - around..=here + around];
+    let middle = times.iter().sum::<f64>() / times.len() as f64;
+    let product: f64 = times.iter().zip(values).map(|(t, y)| (t - middle) * y.re).sum();
+    Some(product / times.iter().map(|t| (t - middle).powi(2)).sum::<f64>())
 }

@@ -19,6 +19,10 @@ pub struct Fidelity {
     pub fine: Evidence,
     /// True if the coarse data have windows of records instead of their beginning.
     pub has_windows: bool,
+    /// Windows of records between those of the coarse and of the medium data, and between these and whole records, each
+    /// twice as long as the ones before. The frequency that a fit to short windows leaves wrong must not lose a period
+    /// in the next ones.
+    pub longer: [Vec<Evidence>; 2],
 }
 
 impl Fidelity {
@@ -39,6 +43,7 @@ impl Fidelity {
             medium: few.thinned(DECIMATION[1]),
             fine: evidence.only(|run| evidence.runs[run].role == Role::Fit),
             has_windows: false,
+            longer: [Vec::new(), Vec::new()],
         }
     }
 
@@ -46,7 +51,14 @@ impl Fidelity {
     /// can be cut.
     pub fn in_windows(evidence: &Evidence) -> Option<Self> {
         let usual = Self::of(evidence);
+        let doubled = |first: f64| (1..).map(move |n| first * 2.0_f64.powi(n));
+        let to_medium = doubled(PERIODS[0]).take_while(|&periods| periods < PERIODS[1]);
+        let to_fine = doubled(PERIODS[1]);
         Some(Self {
+            longer: [
+                to_medium.map_while(|periods| usual.medium.in_windows(periods)).collect(),
+                to_fine.map_while(|periods| usual.fine.in_windows(periods)).collect(),
+            ],
             coarse: usual.coarse.in_windows(PERIODS[0])?,
             medium: usual.medium.in_windows(PERIODS[1]).unwrap_or(usual.medium),
             has_windows: true,

@@ -18,6 +18,8 @@ use crate::discover::posterior::Refit;
 /// One round of successive halving.
 struct Round {
     evidence: fn(&Fidelity) -> &Evidence,
+    /// Windows of records that are fitted before it, one after the other.
+    before: fn(&Fidelity) -> &[Evidence],
     /// Number of searches, each followed by an update of the discrepancy, and evaluations of each search.
     budget: (usize, usize),
     /// Number of effects at their places that go on.
@@ -29,24 +31,28 @@ struct Round {
 const ROUNDS: [Round; 4] = [
     Round {
         evidence: |all| &all.coarse,
+        before: |_| &[],
         budget: (1, 3),
         kept: 8,
         starts: 2,
     },
     Round {
         evidence: |all| &all.coarse,
+        before: |_| &[],
         budget: (2, 6),
         kept: 5,
         starts: 1,
     },
     Round {
         evidence: |all| &all.medium,
+        before: |all| &all.longer[0],
         budget: (2, 8),
         kept: 3,
         starts: 1,
     },
     Round {
         evidence: |all| &all.fine,
+        before: |all| &all.longer[1],
         budget: (2, 15),
         kept: 3,
         starts: 1,
@@ -130,7 +136,7 @@ pub fn race(
         let is_cut = fidelity.has_windows && !last;
         field = field
             .into_par_iter()
-            .filter_map(|runner| run(runner, (round.evidence)(fidelity), round, is_cut))
+            .filter_map(|runner| run(runner, fidelity, round, is_cut))
             .collect();
         let (stay, left) = best(field, candidates, round, number > 0);
         field = stay;
@@ -172,13 +178,21 @@ pub fn entrants<'p>(candidates: &[Candidate], screened: &'p [Screened]) -> Vec<&
 }
 
 /// Fits a runner; `is_cut` tells that the records are in windows.
-fn run<'a>(mut runner: Runner<'a>, evidence: &Evidence, round: &Round, is_cut: bool) -> Option<Runner<'a>> {
+fn run<'a>(mut runner: Runner<'a>, fidelity: &Fidelity, round: &Round, is_cut: bool) -> Option<Runner<'a>> {
     let (rounds, evaluations) = round.budget;
     let times = if runner.hypothesis.model().about().linear || is_cut {
         CHEAP_FACTOR
     } else {
         1
     };
+    for windows in (round.before)(fidelity) {
+        let refit = runner
+            .hypothesis
+            .fit(&runner.place, windows, (1, CHEAP_FACTOR * evaluations))
+            .ok()?;
+        runner.place = runner.hypothesis.place(&refit);
+    }
+    let evidence = (round.evidence)(fidelity);
     let refit = runner
         .hypothesis
         .fit(&runner.place, evidence, (rounds, times * evaluations))
