@@ -108,12 +108,15 @@ impl Roles {
 
     /// True if a mass has a role in the axle's own direction.
     pub fn is_mass(&self, direction: &str, mass: &str, role: &str) -> bool {
-        let own = match role {
-            "body" => self.body.get(direction),
-            "wheel" => self.wheel.as_ref(),
-            _ => self.pivot.as_ref(),
-        };
-        self.is_own(direction) && own.is_some_and(|own| own == mass)
+        let is = |own: Option<&String>| own.is_some_and(|own| own == mass);
+        let body = self.body.get(direction);
+        self.is_own(direction)
+            && match role {
+                "body" => is(body),
+                // As with links: without a wheel, any other mass may have its part.
+                "wheel" => is(self.wheel.as_ref()) || self.wheel.is_none() && !is(body),
+                _ => is(self.pivot.as_ref()),
+            }
     }
 
     fn is_own(&self, direction: &str) -> bool {
