@@ -240,6 +240,47 @@ fn write_with_far_start(folder: &Path) {
     write(folder, &head, (500.0, true), runs.collect());
 }
 
+/// A window begins with the position and the velocity that the sensor shows at its first sample.
+#[test]
+fn a_window_begins_with_the_measured_motion() {
+    let folder = tempfile::tempdir().expect("a place for files");
+    let head = "format = 1\nname = \"sine\"\nmodel = \"one_mass\"\n".to_owned()
+        + &parameter("m_body", 4.0, "kg", (1.0, 20.0))
+        + &channel("force", "f", "z", "force", "N")
+        + &channel("body", "body", "z", "displacement", "m");
+    let (omega, rate) = (TAU * 8.0, 500.0);
+    let phase = |run: usize, time: f64| omega * time + run as f64;
+    let sines = (0..2).map(|run| {
+        let body = |sample: usize| 0.01 * phase(run, sample as f64 / rate).sin();
+        let force = |sample: usize| phase(run, sample as f64 / rate).cos();
+        vec![
+            ("force", 0.0, (0..2000).map(force).collect()),
+            ("body", 0.0, (0..2000).map(body).collect()),
+        ]
+    });
+    write(folder.path(), &head, (rate, true), sines.collect());
+    let campaign = Campaign::open(folder.path()).expect("a valid campaign");
+    let model = load("one_mass").expect("shipped");
+    let whole = Evidence::from_campaign(&campaign, model.about()).expect("the runs can be read");
+    let windows = whole.in_windows(4.0).expect("the records are long enough");
+    let of_fit: Vec<_> = windows.runs.iter().filter(|run| run.role == Role::Fit).collect();
+    assert!(of_fit.len() > 5, "{}", of_fit.len());
+    for run in of_fit {
+        let Stimulus::History { inputs, restarts, .. } = &run.stimulus else {
+            panic!("it is a record");
+        };
+        let (sine, cosine) = phase(0, inputs.start).sin_cos();
+        let [position, velocity] = &restarts[0].readings[..] else {
+            continue;
+        };
+        assert!((position.1 / 0.01 - sine).abs() < 0.02, "{position:?}, not {sine}");
+        assert!(
+            (velocity.1 / (0.01 * omega) - cosine).abs() < 0.05,
+            "{velocity:?}, not {cosine}"
+        );
+    }
+}
+
 /// The errors of a wrong model add up along a record, and its phase drifts away from the measurement: a fit to whole
 /// records ends in a local minimum. One to short windows, then to longer ones and to the whole, finds the resonance.
 #[test]

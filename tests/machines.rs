@@ -146,6 +146,40 @@ fn a_compliant_damper_with_two_slopes_is_named() {
     is_found(&answer, "compliant_digressive_damper", &truth);
 }
 
+/// A mass of 2 kg on 50 kN/m with 10 N s/m, which meets a stop of 200 kN/m at 1.2 mm on one side. Its linear model leaves
+/// nearly all of the response, so the search must begin in short windows, and whole records come last.
+#[test]
+fn a_stop_on_one_side_of_a_lightly_damped_mass_is_named() {
+    let force = |(size, run): (f64, usize), t: f64| -> f64 {
+        let sine = |k: usize| (TAU * (k as f64 + 0.5) * t + (k * k * (run + 3)) as f64).sin();
+        (5..90).map(sine).sum::<f64>() * size
+    };
+    let runs = [(4.0, 0), (8.0, 1), (8.0, 2)].map(|run| {
+        let rates = |_: f64, [z, v]: [f64; 2], force: f64| {
+            let stop = 2e5 * (z - 0.0012).max(0.0);
+            [v, (force - 10.0 * v - 5e4 * z - stop) / 2.0]
+        };
+        let motion = integrate(rates, |t, _| force(run, t), (1.25e-4, 10, 3200));
+        vec![
+            ("force", 0.05, motion.iter().map(|(_, force)| *force).collect()),
+            ("body", 1e-5, motion.iter().map(|(x, _)| x[0]).collect()),
+        ]
+    });
+    let head = [
+        "format = 1\nname = \"stop\"\nmodel = \"one_mass\"\n".to_owned(),
+        parameter("m_body", 1.5, "kg", (0.2, 20.0)),
+        parameter("c_body", 5.0, "N s/m", (0.1, 500.0)),
+        parameter("k_body", 30e3, "N/m", (1e3, 1e6)),
+        parameter("f_offset", 0.0, "N", (-20.0, 20.0)),
+        channel("force", "f", "z", "force", "N"),
+        channel("body", "body", "z", "displacement", "m"),
+    ];
+    let folder = tempfile::tempdir().expect("a folder");
+    write(folder.path(), &head.concat(), (800.0, true), runs.into());
+    let answer = discover(folder.path(), None);
+    is_found(&answer, "bump_stop", &[("gap", 0.0012, 0.05), ("k_stop", 2e5, 0.05)]);
+}
+
 /// Asserts that one effect is found, with these parameters within these relative errors.
 fn is_found(answer: &Value, name: &str, parameters: &[(&str, f64, f64)]) {
     assert_eq!(answer["verdict"], "found", "{answer}");

@@ -563,3 +563,24 @@ fn without_a_wheel_a_link_is_a_mount_too() {
     }
     assert_eq!(effect("hydraulic_mount").places(&model("quarter_car")), [""; 0]);
 }
+
+/// On a test rig without a road, a resonator may sit on any mass that is not the heaviest, whose hidden parts are those of
+/// a body.
+#[test]
+fn without_a_wheel_a_resonator_sits_on_any_other_mass() {
+    let text = "axle stack { \"Three masses on a table\"
+        param m: kg = 1 in 0.1..10 \"Mass\"; param k: N/m = 1e4 in 1..1e6 \"Stiffness\";
+        direction z {
+            motion table; mass low = 3 * m; mass middle = m; mass top = 2 * m;
+            link first: low - table { spring k; } link second: middle - low { spring k; } link third: top - middle { spring k; }
+            output top.acceleration;
+        } }";
+    let source = Source {
+        name: "stack.axle".into(),
+        text: text.into(),
+    };
+    let stack = check(source, &load).unwrap_or_else(|report| panic!("{report}"));
+    assert_eq!(effect("secondary_resonator").places(&stack), ["middle", "top"]);
+    assert_eq!(effect("suspended_mass").places(&stack), ["low"]);
+    assert_eq!(effect("secondary_resonator").places(&model("quarter_car")), ["wheel"]);
+}

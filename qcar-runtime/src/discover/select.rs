@@ -46,7 +46,8 @@ use fidelity::Fidelity;
 use first_law::FirstLaw;
 use held_out::supported_part;
 use probability::probabilities;
-use set::{Set, best_base, excess, explained_share, is_missing, leaves_more_than_noise, most_probable};
+use race::{MOST_REPETITIONS, may_gain_more};
+use set::{Set, best_base, excess, explained_share, is_missing, keep_best, leaves_more_than_noise, most_probable};
 use verdict::conclude;
 
 pub use multi_start::{Minimum, MultiStart, fit_from_starts};
@@ -87,7 +88,7 @@ pub fn discover(
             quieter = Some(own);
         }
     }
-    let (discovery, found) = search(base, evidence, progress);
+    let (discovery, found) = search(base, None, evidence, progress);
     // A large missing effect hides the noise of the inputs, so it is tested again with the answer.
     let quieter = quieter.filter(|quieter| {
         let again = found.again(&quieter.evidence);
@@ -101,7 +102,7 @@ pub fn discover(
     progress(Update::Step(
         "repeating the search without the noise of the recorded inputs",
     ));
-    let (discovery, found) = search(fitted(evidence)?, evidence, progress);
+    let (discovery, found) = search(fitted(evidence)?, found.fitted_to(evidence), evidence, progress);
     evidence.notices.extend(found.note_on_sensors());
     Ok(discovery)
 }
@@ -111,8 +112,9 @@ fn is_more_probable(log_evidence: f64, than: &Set, evidence: &Evidence) -> bool 
     log_evidence - than.explanation.refit.log_evidence > evidence.numbers.odds_of_certain().ln()
 }
 
-/// The search from a fitted base model. Also returns the set of the answer.
-fn search(base: Set, evidence: &Evidence, progress: Progress<'_>) -> (Discovery, Set) {
+/// The search from a fitted base model. `known` is the answer for nearly the same data: the search may miss its minimum
+/// now, or find another. Also returns the set of the answer.
+fn search(base: Set, mut known: Option<Set>, evidence: &Evidence, progress: Progress<'_>) -> (Discovery, Set) {
     let text = format!("the base model alone leaves {}", rms_text(&base.explanation));
     progress(Update::Interim(&text, &[], &base.explanation));
     let mut sets = vec![base];
@@ -123,6 +125,9 @@ fn search(base: Set, evidence: &Evidence, progress: Progress<'_>) -> (Discovery,
         let lead = law.lead(&sets, place, evidence, progress);
         let more = extensions(&sets[place], lead, evidence, progress);
         sets.extend(more);
+        if let Some(known) = known.take() {
+            keep_best(known, &mut sets);
+        }
         while let Some(place) = with_untried_forms(&sets, evidence) {
             sets[place].forms_tried = true;
             progress(Update::Step("trying the other forms of each effect"));
@@ -396,7 +401,12 @@ fn without(left_out: usize, set: &Set, base: &Set, evidence: &Evidence) -> Optio
     let mut from = set.assembly.hypothesis().place(&set.explanation.refit);
     from.errors.truncate(base.assembly.hypothesis().sensor_errors());
     let steady = evidence.minus(&set.explanation.refit.unsteady).with_step_limit();
-    let refit = hypothesis.fit(&from, &steady, (2, 15)).ok()?;
+    let mut refit = hypothesis.fit(&from, &steady, (2, 15)).ok()?;
+    for _ in 0..MOST_REPETITIONS {
+        if may_gain_more(&refit) {
+            refit = hypothesis.fit(&hypothesis.place(&refit), &steady, (2, 15)).ok()?;
+        }
+    }
     let explanation = finite_explanation(&hypothesis, refit, evidence)?;
     let share = set.log_prior * others.len() as f64 / effects.len() as f64;
     Some(Set::new(assembly, explanation, share))

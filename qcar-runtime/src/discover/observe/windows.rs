@@ -91,15 +91,12 @@ fn part(run: &Run, series: &[&Series], window: Range<usize>) -> Option<(Run, Vec
     let half = 0.5 / *rate;
     let compared = time(window.start + ENDS) - half..time(window.end - ENDS) - half;
     let start = time(window.start);
-    let readings = series.iter().flat_map(|series| motion_at(series, start, *rate)).collect();
+    let readings = series.iter().flat_map(|series| motion_at(series, start)).collect();
     let series: Vec<Series> = series.iter().map(|series| inside(series, &compared)).collect();
     if series.iter().any(|own| own.at.len() < FEWEST_VALUES) {
         return None;
     }
-    *restarts = vec![Restart {
-        sample: 0,
-        readings,
-    }];
+    *restarts = vec![Restart { sample: 0, readings }];
     *inputs = Recordings {
         start,
         samples: window.len(),
@@ -122,13 +119,15 @@ fn inside(series: &Series, times: &Range<f64>) -> Series {
 }
 
 /// Reading of a sensor of a position or a velocity at a time (s). Of a position also the velocity: the gradient of a
-/// straight line through a sixteenth of a period on either side. `rate` in Hz.
-fn motion_at(series: &Series, time: f64, rate: f64) -> Vec<(Point, f64)> {
-    let here = series.at.partition_point(|at| *at < time - 0.5 / rate);
-    let Some(value) = series.value.get(here) else {
+/// straight line through a sixteenth of a period on either side.
+fn motion_at(series: &Series, time: f64) -> Vec<(Point, f64)> {
+    let distance = |k: &usize| (series.at[*k] - time).abs();
+    let nearest = (0..series.at.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let Some((nearest, gradient)) = nearest.and_then(|nearest| Some((nearest, gradient(series, nearest)?))) else {
         return Vec::new();
     };
-    let known = (series.sensor.clone(), value.re);
+    let value = series.value[nearest].re + gradient * (time - series.at[nearest]);
+    let known = (series.sensor.clone(), value);
     match series.sensor.quantity {
         Quantity::Velocity => vec![known],
         Quantity::Displacement => {
@@ -136,19 +135,17 @@ fn motion_at(series: &Series, time: f64, rate: f64) -> Vec<(Point, f64)> {
                 quantity: Quantity::Velocity,
                 ..series.sensor.clone()
             };
-            let around = series.half_a_period() / 8.0;
-            let slope = gradient(series, here, (around * rate).max(1.0) as usize);
-            std::iter::once(known)
-                .chain(slope.map(|slope| (velocity, slope)))
-                .collect()
+            vec![known, (velocity, gradient)]
         }
         Quantity::Acceleration | Quantity::Force => Vec::new(),
     }
 }
 
-/// Gradient (1/s) of a straight line through this number of values on either side of one; `None` at the end of the
-/// record.
-fn gradient(series: &Series, here: usize, around: usize) -> Option<f64> {
+/// Gradient (1/s) of a straight line through the values of a sixteenth of a period on either side of one; `None` at the
+/// ends of the record.
+fn gradient(series: &Series, here: usize) -> Option<f64> {
+    let spacing = series.at.get(here + 1)? - series.at[here];
+    let around = (series.half_a_period() / 8.0 / spacing).max(1.0) as usize;
     let values = series.value.get(here.checked_sub(around)?..=here + around)?;
     let times = &series.at[here - around..=here + around];
     let middle = times.iter().sum::<f64>() / times.len() as f64;

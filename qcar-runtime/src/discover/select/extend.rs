@@ -7,7 +7,7 @@ use super::fidelity::{DECIMATION, Fidelity};
 use super::finite_explanation;
 use super::race::{Dropped, Finalist, entrants, race};
 use super::screen::{Point, Screened, Screening};
-use super::set::{Set, is_missing};
+use super::set::{Set, is_missing, keep_best};
 use super::{BASE, Progress, Update};
 use crate::discover::answer::Rival;
 use crate::discover::candidate::Candidate;
@@ -39,12 +39,7 @@ pub fn extensions(set: &Set, lead: f64, evidence: &Evidence, progress: Progress<
     {
         progress(Update::Step("screening in short windows of the records"));
         for own in extended(set, &candidates, &start, lead, evidence, progress) {
-            // Both searches may find the same model, whose probability counts once.
-            match sets.iter_mut().find(|known| known.has_same_effects(&own)) {
-                Some(known) if known.log_posterior() >= own.log_posterior() => (),
-                Some(known) => *known = own,
-                None => sets.push(own),
-            }
+            keep_best(own, &mut sets);
         }
     }
     sets

@@ -56,7 +56,9 @@ impl Fidelity {
         let to_fine = doubled(PERIODS[1]);
         Some(Self {
             longer: [
-                to_medium.map_while(|periods| usual.medium.in_windows(periods)).collect(),
+                to_medium
+                    .map_while(|periods| usual.medium.in_windows(periods))
+                    .collect(),
                 to_fine.map_while(|periods| usual.fine.in_windows(periods)).collect(),
             ],
             coarse: usual.coarse.in_windows(PERIODS[0])?,

@@ -36,10 +36,16 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
 /// True if a set predicts the held-out runs better than another set with the same sensors, or if no run is held out.
 /// With sensors of its own, a set that lacks an effect can take them for so inaccurate that its prediction seems as
 /// good.
+///
+/// A set that explains nearly all of the residual predicts better whatever its score. The score takes the discrepancy of
+/// the fitted runs for that of the held-out ones. If a motion depends so much on its start that small errors of the
+/// parameters grow, the held-out runs show more, and the score prefers a set that is wrong everywhere.
 pub fn predicts_better(set: &Set, other: &Set, evidence: &Evidence) -> bool {
     let none_held_out = evidence.of_role(Role::HeldOut).next().is_none();
     let score = |own: &Explanation| log_score(own, evidence);
-    none_held_out || score(&set.explanation) > score(&other.with_sensors_of(set, evidence))
+    none_held_out
+        || score(&set.explanation) > score(&other.with_sensors_of(set, evidence))
+        || explained_share(other, set, evidence) >= evidence.numbers.certain()
 }
 
 /// True if a set with inaccurate sensors is not certainly more probable than a part of it without the cleat runs along

@@ -14,6 +14,7 @@ use super::{BEAM, Progress, Update};
 use crate::discover::candidate::Candidate;
 use crate::discover::observe::Evidence;
 use crate::discover::posterior::Refit;
+use crate::least_squares::Stop;
 
 /// One round of successive halving.
 struct Round {
@@ -136,7 +137,7 @@ pub fn race(
         let is_cut = fidelity.has_windows && !last;
         field = field
             .into_par_iter()
-            .filter_map(|runner| run(runner, fidelity, round, is_cut))
+            .filter_map(|runner| advance(runner, fidelity, round, is_cut))
             .collect();
         let (stay, left) = best(field, candidates, round, number > 0);
         field = stay;
@@ -144,7 +145,7 @@ pub fn race(
             dropped.splice(0..0, left);
         }
     }
-    let finalists = field.into_iter().filter_map(|runner| {
+    let finalists = converged(field, fidelity).into_iter().filter_map(|runner| {
         Some(Finalist {
             candidate: runner.candidate,
             refit: runner.refit?,
@@ -177,32 +178,60 @@ pub fn entrants<'p>(candidates: &[Candidate], screened: &'p [Screened]) -> Vec<&
     entering.map(|(_, entry)| entry).collect()
 }
 
-/// Fits a runner; `is_cut` tells that the records are in windows.
-fn run<'a>(mut runner: Runner<'a>, fidelity: &Fidelity, round: &Round, is_cut: bool) -> Option<Runner<'a>> {
+/// Fits a runner to the data of a round; `is_cut` tells that the records are in windows.
+fn advance<'a>(mut runner: Runner<'a>, fidelity: &Fidelity, round: &Round, is_cut: bool) -> Option<Runner<'a>> {
     let (rounds, evaluations) = round.budget;
+    for windows in (round.before)(fidelity) {
+        runner = run(runner, windows, (1, CHEAP_FACTOR * evaluations))?;
+    }
     let times = if runner.hypothesis.model().about().linear || is_cut {
         CHEAP_FACTOR
     } else {
         1
     };
-    for windows in (round.before)(fidelity) {
-        let refit = runner
-            .hypothesis
-            .fit(&runner.place, windows, (1, CHEAP_FACTOR * evaluations))
-            .ok()?;
-        runner.place = runner.hypothesis.place(&refit);
-    }
-    let evidence = (round.evidence)(fidelity);
-    let refit = runner
-        .hypothesis
-        .fit(&runner.place, evidence, (rounds, times * evaluations))
-        .ok()?;
+    run(runner, (round.evidence)(fidelity), (rounds, times * evaluations))
+}
+
+/// Fits a runner from where it is; `None` if its evidence is not finite.
+fn run<'a>(mut runner: Runner<'a>, evidence: &Evidence, budget: (usize, usize)) -> Option<Runner<'a>> {
+    let refit = runner.hypothesis.fit(&runner.place, evidence, budget).ok()?;
     if !refit.log_evidence.is_finite() {
         return None;
     }
     runner.place = runner.hypothesis.place(&refit);
     runner.refit = Some(refit);
     Some(runner)
+}
+
+/// Most repetitions of a fit that has not converged.
+pub const MOST_REPETITIONS: usize = 4;
+
+/// True if the last search of a fit ended at its limit of evaluations and was still gaining.
+pub fn may_gain_more(refit: &Refit) -> bool {
+    refit.stop == Stop::Evaluations && refit.gained > NOT_SEPARATED
+}
+
+/// Repeats the last round for finalists whose fit ended at its limit of evaluations, as long as another search may make
+/// one of them the best. Returns them best first.
+fn converged<'a>(mut field: Vec<Runner<'a>>, fidelity: &Fidelity) -> Vec<Runner<'a>> {
+    let last = &ROUNDS[ROUNDS.len() - 1];
+    for _ in 0..MOST_REPETITIONS {
+        let first = field.first().map_or(0.0, Runner::evidence);
+        let is_open = |runner: &Runner<'_>| {
+            let may_gain = runner.refit.as_ref().is_some_and(may_gain_more);
+            may_gain && first - runner.evidence() <= runner.gained()
+        };
+        if !field.iter().any(is_open) {
+            break;
+        }
+        let again = |runner: Runner<'a>| match is_open(&runner) {
+            true => run(runner, &fidelity.fine, last.budget),
+            false => Some(runner),
+        };
+        field = field.into_par_iter().filter_map(again).collect();
+        field.sort_by(|a, b| b.evidence().total_cmp(&a.evidence()));
+    }
+    field
 }
 
 /// The runners that go on, best first, and the dropped candidates. A nuisance effect goes on beside them, since it may

@@ -62,6 +62,20 @@ impl Set {
         Some(refit.log_evidence).filter(|own| own.is_finite())
     }
 
+    /// The set fitted to other evidence of the same runs, from the present optimum; `None` if the fit fails.
+    pub fn fitted_to(&self, evidence: &Evidence) -> Option<Self> {
+        let (hypothesis, own) = (self.assembly.hypothesis(), &self.explanation.refit);
+        let steady = evidence.minus(&own.unsteady).with_step_limit();
+        let fine = &Fidelity::of(&steady).fine;
+        let refit = hypothesis.fit(&hypothesis.place(own), fine, AGAIN).ok()?;
+        let explanation = finite_explanation(&hypothesis, refit, evidence)?;
+        let rivals = self.rivals.clone();
+        Some(Self {
+            rivals,
+            ..Self::new(self.assembly.clone(), explanation, self.log_prior)
+        })
+    }
+
     /// Explanation by this set with the sensor errors of another set, if that one needs better sensors. Without an
     /// effect, the sensors seem worse than they are, and then the effect would seem to explain too little.
     pub fn with_sensors_of(&self, other: &Set, evidence: &Evidence) -> Cow<'_, Explanation> {
@@ -203,6 +217,16 @@ impl Set {
         let mut names: Vec<_> = self.named().map(Placed::name).collect();
         names.sort_unstable();
         names
+    }
+}
+
+/// Adds a set, unless it is there already with a better fit: several searches may find the same model, whose probability
+/// counts once.
+pub fn keep_best(own: Set, sets: &mut Vec<Set>) {
+    match sets.iter_mut().find(|known| known.has_same_effects(&own)) {
+        Some(known) if known.log_posterior() >= own.log_posterior() => (),
+        Some(known) => *known = own,
+        None => sets.push(own),
     }
 }
 
