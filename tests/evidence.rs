@@ -263,21 +263,21 @@ fn a_window_begins_with_the_measured_motion() {
     let model = load("one_mass").expect("shipped");
     let whole = Evidence::from_campaign(&campaign, model.about()).expect("the runs can be read");
     let windows = whole.in_windows(4.0).expect("the records are long enough");
-    let of_fit: Vec<_> = windows.runs.iter().filter(|run| run.role == Role::Fit).collect();
-    assert!(of_fit.len() > 5, "{}", of_fit.len());
-    for run in of_fit {
+    let fitted: Vec<_> = windows.runs.iter().filter(|run| run.role == Role::Fit).collect();
+    assert!(fitted.len() > 5, "{} windows", fitted.len());
+    for run in fitted {
         let Stimulus::History { inputs, restarts, .. } = &run.stimulus else {
             panic!("it is a record");
         };
-        let (sine, cosine) = phase(0, inputs.start).sin_cos();
         let [position, velocity] = &restarts[0].readings[..] else {
-            continue;
+            panic!("the sensor shows a position, hence a velocity");
         };
-        assert!((position.1 / 0.01 - sine).abs() < 0.02, "{position:?}, not {sine}");
-        assert!(
-            (velocity.1 / (0.01 * omega) - cosine).abs() < 0.05,
-            "{velocity:?}, not {cosine}"
-        );
+        let (sine, cosine) = phase(0, inputs.start).sin_cos();
+        let [position, velocity] = [position.1 / 0.01, velocity.1 / (0.01 * omega)];
+        assert!((position - sine).abs() < 0.02, "{position}, not {sine}");
+        // The first window has values on one side only.
+        let within = if inputs.start > 0.0 { 0.05 } else { 0.15 };
+        assert!((velocity - cosine).abs() < within, "{velocity}, not {cosine}");
     }
 }
 

@@ -8,6 +8,8 @@
 
 use std::ops::Range;
 
+use nalgebra::{Matrix3, Vector3};
+
 use super::dataset::Evidence;
 use super::run::{Recordings, Restart, Run, Stimulus};
 use super::series::Series;
@@ -118,15 +120,21 @@ fn inside(series: &Series, times: &Range<f64>) -> Series {
     own
 }
 
-/// Reading of a sensor of a position or a velocity at a time (s). Of a position also the velocity: the gradient of a
-/// straight line through a sixteenth of a period on either side.
+/// Reading of a sensor of a position or a velocity at a time (s), and of a position also the velocity. Both are those of
+/// the parabola through a sixteenth of a period on either side (Savitzky, A., Golay, M. J. E.: Analytical Chemistry 36,
+/// 1964). Empty if the sensor has too few values so near.
 fn motion_at(series: &Series, time: f64) -> Vec<(Point, f64)> {
-    let distance = |k: &usize| (series.at[*k] - time).abs();
-    let nearest = (0..series.at.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)));
-    let Some((nearest, gradient)) = nearest.and_then(|nearest| Some((nearest, gradient(series, nearest)?))) else {
+    let [first, .., last] = series.at[..] else {
         return Vec::new();
     };
-    let value = series.value[nearest].re + gradient * (time - series.at[nearest]);
+    let spacing = (last - first) / (series.at.len() - 1) as f64;
+    let reach = (series.half_a_period() / 8.0).max(2.5 * spacing);
+    let place = |time: f64| series.at.partition_point(|at| *at < time);
+    let around = place(time - reach)..place(time + reach);
+    let times = series.at[around.clone()].iter().map(|at| (at - time) / reach);
+    let Some((value, slope)) = parabola(times.zip(series.value[around].iter().map(|value| value.re))) else {
+        return Vec::new();
+    };
     let known = (series.sensor.clone(), value);
     match series.sensor.quantity {
         Quantity::Velocity => vec![known],
@@ -135,20 +143,20 @@ fn motion_at(series: &Series, time: f64) -> Vec<(Point, f64)> {
                 quantity: Quantity::Velocity,
                 ..series.sensor.clone()
             };
-            vec![known, (velocity, gradient)]
+            vec![known, (velocity, slope / reach)]
         }
         Quantity::Acceleration | Quantity::Force => Vec::new(),
     }
 }
 
-/// Gradient (1/s) of a straight line through the values of a sixteenth of a period on either side of one; `None` at the
-/// ends of the record.
-fn gradient(series: &Series, here: usize) -> Option<f64> {
-    let spacing = series.at.get(here + 1)? - series.at[here];
-    let around = (series.half_a_period() / 8.0 / spacing).max(1.0) as usize;
-    let values = series.value.get(here.checked_sub(around)?..=here + around)?;
-    let times = &series.at[here - around..=here + around];
-    let middle = times.iter().sum::<f64>() / times.len() as f64;
-    let product: f64 = times.iter().zip(values).map(|(t, y)| (t - middle) * y.re).sum();
-    Some(product / times.iter().map(|t| (t - middle).powi(2)).sum::<f64>())
+/// Value and slope at 0 of the parabola with the least sum of squares; `None` through fewer than three points.
+fn parabola(points: impl Iterator<Item = (f64, f64)>) -> Option<(f64, f64)> {
+    let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
+    for (t, y) in points {
+        let powers = Vector3::new(1.0, t, t * t);
+        normal += powers * powers.transpose();
+        right += powers * y;
+    }
+    let found = normal.cholesky()?.solve(&right);
+    Some((found[0], found[1]))
 }
