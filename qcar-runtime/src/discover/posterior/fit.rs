@@ -56,7 +56,8 @@ pub struct Start<'a> {
 }
 
 /// Maximum a posteriori fit of the free and nuisance parameters together with the discrepancy. It runs `rounds`
-/// searches of at most `evaluations` each, and learns the discrepancy from the residuals after each search.
+/// searches of at most `evaluations` each, which end at a predicted gain of `decrement`, and learns the discrepancy from
+/// the residuals after each search.
 ///
 /// # Errors
 /// Fails if the model lacks a measured quantity.
@@ -67,6 +68,7 @@ pub fn fit(
     evidence: &Evidence,
     nuisance: Nuisance,
     (rounds, evaluations): (usize, usize),
+    decrement: f64,
 ) -> Result<Refit, PredictError> {
     let (errors, factors) = start.errors.split_at(start.errors.len().min(nuisance.of_sensors()));
     let nuisance = nuisance.with_initial_states(model.about(), evidence);
@@ -89,6 +91,7 @@ pub fn fit(
     let mut posterior = Posterior::new(model, start.values.clone(), free, evidence, nuisance);
     posterior.discrepancy = Some(start.discrepancy);
     posterior.has_discrepancy = true;
+    posterior.decrement = decrement;
     posterior.centre = start.centre.clone();
     place.resize(posterior.variables(), 0.0);
     posterior.fit(place, rounds, evaluations)

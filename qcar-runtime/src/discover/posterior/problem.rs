@@ -31,6 +31,8 @@ pub struct Posterior<'a> {
     pub sigmas: Vec<f64>,
     /// Start of the search.
     pub start: Vec<f64>,
+    /// Predicted gain that ends the search; zero for a search that converges as far as numbers allow.
+    pub decrement: f64,
     /// Centres of the parameter priors, which apply if there is a discrepancy.
     pub centre: Values,
     /// Discrepancy; `None` for a fit against noise alone, and while it is estimated.
@@ -80,6 +82,7 @@ impl<'a> Posterior<'a> {
             evidence,
             sigmas: nuisance.sigmas().into_iter().chain(sides).collect(),
             start: Vec::new(),
+            decrement: 0.0,
             centre: values.clone(),
             discrepancy: None,
             whitens: true,

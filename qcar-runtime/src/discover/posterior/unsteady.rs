@@ -2,6 +2,7 @@
 
 use super::problem::Posterior;
 use super::refit::Refit;
+use super::search::DECREMENT;
 use crate::campaign::Role;
 use crate::discover::observe::{Evidence, PredictError, Series, Stimulus, unsteady};
 use crate::model::Model;
@@ -22,6 +23,7 @@ pub fn add_unsteady(model: &dyn Model, refit: Refit, evidence: &Evidence) -> Res
         return Ok(refit);
     }
     let mut posterior = Posterior::of(&refit, model, evidence);
+    posterior.decrement = DECREMENT;
     let mut refit = refit;
     for _ in 0..ROUNDS {
         let conditions = refit.nuisance.conditions(evidence, &refit.coefficients);

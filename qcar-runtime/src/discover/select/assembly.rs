@@ -10,7 +10,7 @@ use crate::campaign::Role;
 use crate::discover::candidate::{Added, Candidate, Change, Workshop};
 use crate::discover::noise::{AccuracyClass, Discrepancy, Form, InitialState, Known, Nuisance};
 use crate::discover::observe::{Evidence, Free, PredictError};
-use crate::discover::posterior::{Explanation, Given, Misfit, Refit, Setting, Start, add_unsteady, fit};
+use crate::discover::posterior::{DECREMENT, Explanation, Given, Misfit, Refit, Setting, Start, add_unsteady, fit};
 use crate::model::Model;
 use crate::response::parameters::Values;
 
@@ -328,7 +328,20 @@ impl<'a> Hypothesis<'a> {
     /// # Errors
     /// Fails if the model cannot predict the evidence.
     pub fn fit(&self, from: &Place, evidence: &Evidence, budget: (usize, usize)) -> Result<Refit, PredictError> {
-        self.fit_knowing(Known::Nothing, from, evidence, budget)
+        self.fit_knowing(Known::Nothing, from, evidence, budget, DECREMENT)
+    }
+
+    /// Like [`Self::fit`], until the search cannot gain any more.
+    ///
+    /// # Errors
+    /// As [`Self::fit`].
+    pub fn fit_to_convergence(
+        &self,
+        from: &Place,
+        evidence: &Evidence,
+        budget: (usize, usize),
+    ) -> Result<Refit, PredictError> {
+        self.fit_knowing(Known::Nothing, from, evidence, budget, 0.0)
     }
 
     /// Like [`Self::fit`], with sensors as accurate as their data sheets.
@@ -342,7 +355,7 @@ impl<'a> Hypothesis<'a> {
         budget: (usize, usize),
     ) -> Result<Refit, PredictError> {
         from.accuracy = AccuracyClass::default();
-        self.fit_knowing(Known::Class, &from, evidence, budget)
+        self.fit_knowing(Known::Class, &from, evidence, budget, DECREMENT)
     }
 
     /// Like [`Self::fit`], with the sensor errors of another fit.
@@ -359,7 +372,7 @@ impl<'a> Hypothesis<'a> {
         let sensors = self.nuisance.of_calibration();
         from.accuracy = other.nuisance.accuracy;
         from.errors[..sensors].copy_from_slice(&other.coefficients[..sensors]);
-        self.fit_knowing(Known::Errors, &from, evidence, budget)
+        self.fit_knowing(Known::Errors, &from, evidence, budget, DECREMENT)
     }
 
     fn fit_knowing(
@@ -368,6 +381,7 @@ impl<'a> Hypothesis<'a> {
         from: &Place,
         evidence: &Evidence,
         budget: (usize, usize),
+        decrement: f64,
     ) -> Result<Refit, PredictError> {
         let free = self.free();
         let parameters = &self.model.about().parameters;
@@ -392,7 +406,7 @@ impl<'a> Hypothesis<'a> {
             known,
             ..self.nuisance.clone()
         };
-        fit(self.model, start, &free, evidence, nuisance, budget)
+        fit(self.model, start, &free, evidence, nuisance, budget, decrement)
     }
 
     /// Explanation of all runs by a fit, with the non-steady part of the sweeps.

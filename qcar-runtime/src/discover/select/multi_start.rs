@@ -62,7 +62,7 @@ pub fn fit_from_starts(
     let with_unsteady = hypothesis.explanation(best, evidence)?.refit;
     // Subtract the non-steady part of the sweeps from the measurement; the fit compares steady harmonics only.
     let steady = Fidelity::of(&evidence.minus(&with_unsteady.unsteady)).fine;
-    let refit = hypothesis.fit(&hypothesis.place(&with_unsteady), &steady, FINAL)?;
+    let refit = hypothesis.fit_to_convergence(&hypothesis.place(&with_unsteady), &steady, FINAL)?;
     let other = |other: &Refit| Minimum {
         log_odds: minima[0].log_evidence - other.log_evidence,
         named: hypothesis.place(other).named,
