@@ -73,7 +73,8 @@ pub struct Options {
     pub step: f64,
     /// Reduction of the cost that a full Gauss-Newton step predicts: half the squared Newton decrement (Boyd and
     /// Vandenberghe, "Convex Optimization", section 9.5.1). If the residuals are in standard deviations, no variable is
-    /// further than `sqrt(2 decrement)` standard errors from the minimum. Zero switches the test off.
+    /// further than `sqrt(2 decrement)` standard errors from the minimum. A step beyond a bound does not count, because
+    /// which variables end at their bounds is part of the result. Zero switches the test off.
     pub decrement: f64,
     /// Most evaluations of the residual.
     pub evaluations: usize,
@@ -244,7 +245,7 @@ impl<'a, P: Problem + ?Sized> Search<'a, P> {
         loop {
             let interior = Interior::new(&self.here.x, &self.normal, self.bounds);
             let optimality = interior.optimality(&self.normal, self.here.cost);
-            if optimality <= options.gradient {
+            if optimality <= options.gradient || self.is_within(options.decrement) {
                 return Stop::Gradient;
             }
             if self.iterations == 0 {
@@ -265,9 +266,6 @@ impl<'a, P: Problem + ?Sized> Search<'a, P> {
                 return Some(Stop::Evaluations);
             }
             let step = model.step(&self.here.x, self.bounds, self.radius, optimality);
-            if step.predicted < options.decrement && !self.is_on_boundary(&step) {
-                return Some(Stop::Gradient);
-            }
             self.try_step(&step);
             let cost = self.here.cost;
             let reduction = cost - self.trial.cost;
@@ -326,14 +324,18 @@ impl<'a, P: Problem + ?Sized> Search<'a, P> {
         let length = step.scaled.norm();
         if ratio.is_nan() || ratio < 0.25 {
             self.radius = 0.25 * length;
-        } else if ratio > 0.75 && self.is_on_boundary(step) {
+        } else if ratio > 0.75 && length > 0.95 * self.radius {
             self.radius *= 2.0;
         }
     }
 
-    /// True if the trust region limits the step.
-    fn is_on_boundary(&self, step: &Step) -> bool {
-        step.scaled.norm() > 0.95 * self.radius
+    /// True if a full Gauss-Newton step stays within the bounds and predicts a smaller reduction than this.
+    fn is_within(&self, decrement: f64) -> bool {
+        let step = if decrement > 0.0 { self.normal.newton() } else { None };
+        step.is_some_and(|step| {
+            -0.5 * self.normal.gradient.dot(&step) < decrement
+                && reflect::stays_inside(&self.here.x, &step, self.bounds)
+        })
     }
 
     fn finish(self, stop: Stop) -> Outcome {

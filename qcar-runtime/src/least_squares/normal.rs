@@ -45,6 +45,16 @@ impl NormalEquations {
         products.iter().all(|value| value.is_finite())
     }
 
+    /// The Gauss-Newton step; `None` if the matrix is singular.
+    pub fn newton(&self) -> Option<DVector<f64>> {
+        let scale = &self.scale;
+        let scaled = DMatrix::from_fn(scale.len(), scale.len(), |i, j| {
+            scale[i] * self.matrix[(i, j)] * scale[j]
+        });
+        let step = scaled.cholesky()?.solve(&self.gradient.component_mul(scale));
+        Some(-step.component_mul(scale))
+    }
+
     fn rescale(&mut self) {
         for k in 0..self.scale.len() {
             self.largest[k] = self.largest[k].max(self.matrix[(k, k)].sqrt());

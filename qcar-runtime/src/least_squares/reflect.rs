@@ -194,6 +194,11 @@ impl<'a> Model<'a> {
     }
 }
 
+/// True if a step crosses no bound.
+pub(super) fn stays_inside(x: &DVector<f64>, step: &DVector<f64>, bounds: &Bounds) -> bool {
+    reach(x, step, bounds).0 > 1.0
+}
+
 /// Largest multiple of `direction` before the first bound, and the variables that reach theirs there.
 fn reach(x: &DVector<f64>, direction: &DVector<f64>, bounds: &Bounds) -> (f64, Vec<bool>) {
     let times = |k: usize| match direction[k] {

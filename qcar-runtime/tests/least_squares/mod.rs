@@ -9,7 +9,7 @@ mod nist;
 // How far a variable may be moved.
 mod profile;
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use qcar_runtime::least_squares::{Bounds, Options, Outcome, Stop, minimize};
 
 use dual::{Dual, Functions};
@@ -161,6 +161,37 @@ fn running_out_of_evaluations_is_said() {
     let outcome = minimize(&mut problem, &[-1.2, 1.0], &Bounds::none(2), &options);
     assert_eq!((outcome.stop, outcome.evaluations), (Stop::Evaluations, 5));
     assert!(!outcome.stop.converged());
+}
+
+/// Residuals in standard deviations: a search that ends by the decrement is within a tenth of a standard error of the
+/// minimum. If the minimum is at a bound, it still ends there.
+#[test]
+fn the_decrement_ends_a_search_near_its_minimum_but_not_short_of_a_bound() {
+    let early = Options {
+        decrement: 0.005,
+        ..TIGHT
+    };
+    let search = |bounds: &Bounds, options: &Options| {
+        let mut problem = Functions {
+            variables: 2,
+            residuals: 2,
+            residual: rosenbrock,
+        };
+        minimize(&mut problem, &[-1.2, 1.0], bounds, options)
+    };
+    let free = Bounds::none(2);
+    let [early_end, end] = [&early, &TIGHT].map(|options| search(&free, options));
+    assert_eq!(early_end.stop, Stop::Gradient);
+    assert!(early_end.evaluations < end.evaluations);
+    let change = &early_end.jacobian * (DVector::from_vec(early_end.x) - DVector::from_vec(end.x));
+    assert!(change.norm() < 0.1, "{change}");
+    let bounded = Bounds {
+        upper: vec![0.97, f64::INFINITY],
+        ..Bounds::none(2)
+    };
+    let [early_end, end] = [&early, &TIGHT].map(|options| search(&bounded, options));
+    assert_eq!((&early_end.at_bound, &end.at_bound), (&vec![1, 0], &vec![1, 0]));
+    assert_close(&early_end.x, &end.x, 1e-9);
 }
 
 #[test]
