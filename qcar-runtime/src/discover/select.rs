@@ -392,6 +392,9 @@ fn reductions(set: &Set, base: &Set, evidence: &Evidence, progress: Progress<'_>
         .collect()
 }
 
+/// Rounds and evaluations of a fit without an effect.
+const WITHOUT: (usize, usize) = (2, 15);
+
 /// The set without one of its effects, by position; `None` if it cannot be assembled or fitted.
 fn without(left_out: usize, set: &Set, base: &Set, evidence: &Evidence) -> Option<Set> {
     let effects = set.assembly.effects();
@@ -401,11 +404,12 @@ fn without(left_out: usize, set: &Set, base: &Set, evidence: &Evidence) -> Optio
     let mut from = set.assembly.hypothesis().place(&set.explanation.refit);
     from.errors.truncate(base.assembly.hypothesis().sensor_errors());
     let steady = evidence.minus(&set.explanation.refit.unsteady).with_step_limit();
-    let mut refit = hypothesis.fit(&from, &steady, (2, 15)).ok()?;
+    let mut refit = hypothesis.fit(&from, &steady, WITHOUT).ok()?;
     for _ in 0..MOST_REPETITIONS {
-        if may_gain_more(&refit) {
-            refit = hypothesis.fit(&hypothesis.place(&refit), &steady, (2, 15)).ok()?;
+        if !may_gain_more(&refit) {
+            break;
         }
+        refit = hypothesis.fit(&hypothesis.place(&refit), &steady, WITHOUT).ok()?;
     }
     let explanation = finite_explanation(&hypothesis, refit, evidence)?;
     let share = set.log_prior * others.len() as f64 / effects.len() as f64;

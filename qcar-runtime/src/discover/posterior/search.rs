@@ -19,8 +19,9 @@ const ERROR_BOUND: f64 = 6.0;
 /// Largest change of a sensor error that is held, in prior standard deviations: the search needs an interval.
 const HELD: f64 = 1e-3;
 
-/// Predicted gain in log posterior density that ends a search among candidates. The unknowns are then within a tenth of their standard
-/// errors from the maximum, and the log evidence is too low by a hundredth of what one unknown gains by chance.
+/// Predicted gain in log posterior density that ends a search among candidates. The unknowns are then within a tenth of
+/// their standard errors from the maximum. The log evidence is too low by a hundredth of what one unknown gains by
+/// chance.
 pub const DECREMENT: f64 = 0.005;
 
 impl Posterior<'_> {

@@ -203,7 +203,7 @@ fn run<'a>(mut runner: Runner<'a>, evidence: &Evidence, budget: (usize, usize)) 
     Some(runner)
 }
 
-/// Most repetitions of a fit that has not converged.
+/// Most repetitions of a fit that has not converged. A choice, which limits the time for hopeless candidates.
 pub const MOST_REPETITIONS: usize = 4;
 
 /// True if the last search of a fit ended at its limit of evaluations and was still gaining.

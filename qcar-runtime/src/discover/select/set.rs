@@ -64,10 +64,9 @@ impl Set {
 
     /// The set fitted to other evidence of the same runs, from the present optimum; `None` if the fit fails.
     pub fn fitted_to(&self, evidence: &Evidence) -> Option<Self> {
-        let (hypothesis, own) = (self.assembly.hypothesis(), &self.explanation.refit);
-        let steady = evidence.minus(&own.unsteady).with_step_limit();
-        let fine = &Fidelity::of(&steady).fine;
-        let refit = hypothesis.fit(&hypothesis.place(own), fine, AGAIN).ok()?;
+        let hypothesis = self.assembly.hypothesis();
+        let from = hypothesis.place(&self.explanation.refit);
+        let refit = hypothesis.fit(&from, &self.steady(evidence), AGAIN).ok()?;
         let explanation = finite_explanation(&hypothesis, refit, evidence)?;
         let rivals = self.rivals.clone();
         Some(Self {
@@ -95,14 +94,16 @@ impl Set {
     }
 
     fn refitted_with_sensors(&self, other: &Refit, evidence: &Evidence) -> Option<Explanation> {
-        let own = &self.explanation.refit;
         let hypothesis = self.assembly.hypothesis();
-        let steady = evidence.minus(&own.unsteady).with_step_limit();
-        let fine = &Fidelity::of(&steady).fine;
-        let refit = hypothesis
-            .fit_with_sensors_of(other, hypothesis.place(own), fine, AGAIN)
-            .ok()?;
-        finite_explanation(&hypothesis, refit, evidence)
+        let from = hypothesis.place(&self.explanation.refit);
+        let refit = hypothesis.fit_with_sensors_of(other, from, &self.steady(evidence), AGAIN);
+        finite_explanation(&hypothesis, refit.ok()?, evidence)
+    }
+
+    /// The fitted runs without the non-steady part of the sweeps.
+    fn steady(&self, evidence: &Evidence) -> Evidence {
+        let steady = evidence.minus(&self.explanation.refit.unsteady).with_step_limit();
+        Fidelity::of(&steady).fine
     }
 
     /// A notice if the sensors are less accurate than their data sheets.
