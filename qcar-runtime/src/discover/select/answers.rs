@@ -2,10 +2,9 @@
 
 use rayon::prelude::*;
 
-use super::held_out::supported_part;
+use super::held_out::{is_refuted, supported_part};
 use super::probability::probabilities;
 use super::set::{Set, best_base, is_part, most_probable};
-use crate::discover::numbers::Numbers;
 use crate::discover::observe::Evidence;
 
 /// Sets with the same names, and their joint probability.
@@ -69,19 +68,24 @@ fn represented_by(place: usize, sets: &[Set], supported: &[usize]) -> usize {
 }
 
 /// The credible set: the most probable names that together reach the required probability, without names that only add
-/// effects to another member. It is the base model alone if the most probable names are dismissed, or if the
-/// probability of the base model exceeds the accepted probability of error.
-pub fn credible(sets: &[Set], answers: &[Answer], numbers: &Numbers) -> Vec<usize> {
+/// effects to another member. It is the base model alone if the probability of the base model exceeds the accepted
+/// probability of error, or if dismissed names are more probable than all others. Something else is then missing, unless
+/// the held-out runs refute these names in favour of the most probable others.
+pub fn credible(sets: &[Set], answers: &[Answer], evidence: &Evidence) -> Vec<usize> {
+    let numbers = &evidence.numbers;
     let is_named = |own: &&Answer| !sets[own.set].names().is_empty();
     let none: f64 = answers
         .iter()
         .filter(|own| !is_named(own))
         .map(|own| own.probability)
         .sum();
-    if answers[0].dismissed || none > numbers.error_probability {
+    let possible = answers.iter().filter(|own| is_named(own) && !own.dismissed);
+    let most_probable = possible.clone().next();
+    let is_refuted = |own: &Answer| most_probable.is_some_and(|by| is_refuted(&sets[own.set], &sets[by.set], evidence));
+    let mut before = answers.iter().take_while(|own| own.dismissed);
+    if none > numbers.error_probability || !before.all(is_refuted) {
         return vec![best_base(sets)];
     }
-    let possible = answers.iter().filter(|own| is_named(own) && !own.dismissed);
     let all: f64 = possible.clone().map(|own| own.probability).sum();
     let mut sum = 0.0;
     let credible = possible.take_while(|own| {

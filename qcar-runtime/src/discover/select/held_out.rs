@@ -48,6 +48,15 @@ pub fn predicts_better(set: &Set, other: &Set, evidence: &Evidence) -> bool {
         || explained_share(other, set, evidence) >= evidence.numbers.certain()
 }
 
+/// True if a less probable set is certainly more probable than a set once the held-out runs count as data too.
+pub fn is_refuted(set: &Set, other: &Set, evidence: &Evidence) -> bool {
+    if evidence.of_role(Role::HeldOut).next().is_none() {
+        return false;
+    }
+    let with_held_out = |own: &Set| own.log_posterior() + log_score(&own.explanation, evidence);
+    with_held_out(other) - with_held_out(set) > evidence.numbers.odds_of_certain().ln()
+}
+
 /// True if a set with inaccurate sensors is not certainly more probable than a part of it without the cleat runs along
 /// some axis. No sensor is less accurate than its data sheet by that much, so the model is wrong in another way. An error
 /// of the tyre law is common to all these runs, which are then no more than one sign of an effect.

@@ -12,7 +12,7 @@ pub fn conclude(sets: &[Set], evidence: &Evidence) -> (Discovery, usize) {
     let answers = answers(sets, evidence);
     let base = best_base(sets);
     let before = &sets[base];
-    let credible = credible(sets, &answers, &evidence.numbers);
+    let credible = credible(sets, &answers, evidence);
     // Effects that explain less than half of the excess residual are no answer, even if they are the most probable.
     let explains = |set: usize| explained_share(before, &sets[set], evidence) >= GREATER_PART;
     let members = if explains(credible[0]) { credible } else { vec![base] };
