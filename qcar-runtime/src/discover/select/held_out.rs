@@ -1,4 +1,4 @@
-//! Checks sets on the held-out runs, which no fit and no choice has used.
+//! Checks sets on the held-out runs, which no fit has used.
 
 use super::set::{Set, excess, explained_share, is_part, most_probable};
 use crate::campaign::Role;
