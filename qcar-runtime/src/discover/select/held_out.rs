@@ -7,8 +7,8 @@ use crate::discover::posterior::Explanation;
 
 /// The set itself, or the part of it that remains after unsupported effects are removed. A smaller set replaces the set
 /// if it predicts the held-out runs at least as well, if the additional effects explain too little of its excess
-/// residual, if one of them has a parameter at its bound, or if only the cleat runs along one axis prefer the set. The last
-/// two checks need no held-out runs.
+/// residual, if one of them has a parameter at its bound, or if only the cleat runs along one axis prefer the set. The
+/// last two checks need no held-out runs.
 pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
     let has_held_out = evidence.of_role(Role::HeldOut).next().is_some();
     loop {
@@ -37,8 +37,8 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
 /// With sensors of its own, a set that lacks an effect can take them for so inaccurate that its prediction seems as
 /// good.
 ///
-/// A set that explains nearly all of the residual predicts better whatever its score. The score takes the discrepancy of
-/// the fitted runs for that of the held-out ones. If a motion depends so much on its start that small errors of the
+/// A set that explains nearly all of the residual predicts better whatever its score. The score takes the discrepancy
+/// of the fitted runs for that of the held-out ones. If a motion depends so much on its start that small errors of the
 /// parameters grow, the held-out runs show more, and the score prefers a set that is wrong everywhere.
 pub fn predicts_better(set: &Set, other: &Set, evidence: &Evidence) -> bool {
     let none_held_out = evidence.of_role(Role::HeldOut).next().is_none();
@@ -58,8 +58,8 @@ pub fn is_refuted(set: &Set, other: &Set, evidence: &Evidence) -> bool {
 }
 
 /// True if a set with inaccurate sensors is not certainly more probable than a part of it without the cleat runs along
-/// some axis. No sensor is less accurate than its data sheet by that much, so the model is wrong in another way. An error
-/// of the tyre law is common to all these runs, which are then no more than one sign of an effect.
+/// some axis. No sensor is less accurate than its data sheet by that much, so the model is wrong in another way. An
+/// error of the tyre law is common to all these runs, which are then no more than one sign of an effect.
 fn rests_on_passages(set: &Set, part: &Set, evidence: &Evidence) -> bool {
     let of_passages = |own: &Set| own.explanation.log_likelihoods_of_passages(evidence);
     if !set.has_inaccurate_sensors() {

@@ -156,9 +156,9 @@ pub fn race(
 
 /// Candidates for the first round: those with the largest gains, the best of each place, and the best of each form of
 /// each effect. Only effects that gain at a place in some form enter. Rank alone does not decide, because the model's
-/// parameters may have to change much before the right effect gains much: the screening shows that something is missing,
-/// the fits show what. Nuisance effects enter at every place even without a gain: every real axle has them, and another
-/// effect must not explain their part of the residual.
+/// parameters may have to change much before the right effect gains much: the screening shows that something is
+/// missing, the fits show what. Nuisance effects enter at every place even without a gain: every real axle has them,
+/// and another effect must not explain their part of the residual.
 pub fn entrants<'p>(candidates: &[Candidate], screened: &'p [Screened]) -> Vec<&'p Screened> {
     let effect = |entry: &Screened| {
         let own = &candidates[entry.candidate];

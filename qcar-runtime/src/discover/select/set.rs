@@ -221,8 +221,8 @@ impl Set {
     }
 }
 
-/// Adds a set, unless it is there already with a better fit: several searches may find the same model, whose probability
-/// counts once.
+/// Adds a set, unless it is there already with a better fit: several searches may find the same model, whose
+/// probability counts once.
 pub fn keep_best(own: Set, sets: &mut Vec<Set>) {
     match sets.iter_mut().find(|known| known.has_same_effects(&own)) {
         Some(known) if known.log_posterior() >= own.log_posterior() => (),
