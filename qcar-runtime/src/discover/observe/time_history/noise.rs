@@ -13,7 +13,7 @@ use crate::spectrum::{Trend, Window, transform};
 
 /// Share of the spectrum, at its upper end, that counts as noise.
 const HIGHEST: f64 = 0.1;
-/// Number of parts of a record that are tested for rest.
+/// Number of parts of a record that are tested for rest. A choice, like the limits below.
 const PARTS: usize = 20;
 /// Fewest samples of a part.
 const FEWEST: usize = 20;
