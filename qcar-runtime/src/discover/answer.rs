@@ -6,13 +6,13 @@ use super::posterior::Explanation;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
-    /// Only noise is left.
+    /// The base model explains the data: no effect is certain, and the residuals show that none is missing.
     None,
     /// The missing effects are identified.
     Found,
     /// Several effects explain the data equally well.
     Class,
-    /// No effect explains the data.
+    /// Something is missing, but no effect explains the data.
     Unknown,
 }
 
@@ -43,9 +43,9 @@ pub struct Rival {
     pub effect: String,
     /// Link, mass or sensor location.
     pub at: String,
-    /// Difference of its log evidence to the best; positive if it is worse.
+    /// Log evidence of the best candidate minus its own; positive if it is worse.
     pub behind: f64,
-    /// True if it was dropped before the last round: `behind` then comes from a fit to a part of the lines.
+    /// True if it was dropped before the last round: `behind` then comes from a fit to a part of the data.
     pub early: bool,
 }
 
@@ -58,11 +58,12 @@ pub struct Probable {
     pub at: String,
     /// Form that fits best; `None` if the effect has only one.
     pub form: Option<String>,
-    /// Probability that the effect is missing, given that one of the fitted sets of effects is true.
+    /// Probability that the effect is missing, given that one of the fitted sets is true. Sets that the held-out runs
+    /// do not support, and limiting cases of simpler sets, do not count.
     pub probability: f64,
-    /// Share of the excess residual on the held-out runs that it explains.
+    /// Share of the excess residual that the best of the smallest sets with it explains, as in [`Finding::explained`].
     pub explained: f64,
-    /// Increase of the log evidence.
+    /// Increase of the log evidence by that set.
     pub log_evidence: f64,
 }
 
@@ -95,9 +96,9 @@ pub struct Discovery {
 pub struct Learned {
     /// The laws with their places and coefficients.
     pub laws: Vec<Finding>,
-    /// Share of the excess residual on the held-out runs that they explain.
+    /// Share of the excess residual that they explain, as in [`Finding::explained`].
     pub explained: f64,
-    /// Longest run, s; a law over time is not determined beyond it.
+    /// Duration of the longest run, s; a law over time is not determined beyond it.
     pub longest: f64,
     /// Explanation with the laws.
     pub explanation: Explanation,

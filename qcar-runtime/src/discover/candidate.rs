@@ -14,7 +14,7 @@ pub struct Candidate {
     pub at: String,
     /// Variant of the effect at that place; `None` if there is only one.
     pub form: Option<String>,
-    /// True for a nuisance effect: every real car has some of it, so it is fitted but is no answer.
+    /// True for a nuisance effect: every real car has some of it, so it is fitted but never reported as a finding.
     pub nuisance: bool,
     /// The change that it makes.
     pub change: Change,

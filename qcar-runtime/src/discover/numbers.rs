@@ -29,8 +29,8 @@ pub struct Numbers {
     pub error_probability: f64,
 
     /// Share of the excess residual that a learned law may leave on the held-out runs if it counts as an explanation. A
-    /// further effect may leave the same share of what the other effects leave. A choice: beside a first effect, most
-    /// of the residual of hardware is its own, and an effect that adapts to half of that is easily found.
+    /// further effect may leave the same share of what the other effects leave. A choice. What a first effect leaves on
+    /// hardware mostly has no cause in the catalogue, and some effect explains half of that by chance.
     pub left: f64,
 }
 

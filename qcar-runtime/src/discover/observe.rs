@@ -1,9 +1,10 @@
 //! Measured data and their predictions by a model.
 //!
 //! A data set consists of series. Every series knows its run, its sensor and the kind of its values. Every run knows
-//! its role, its level and its excitation. The uncertainty of a value is noise that is independent from value to
-//! value. Errors that all values of a sensor share, such as its calibration, are not included: see
-//! [`noise`](super::noise). The module of each kind of run reads the measurement and predicts it.
+//! its role, its level and its excitation. The uncertainty of a value consists of noise, which is independent from
+//! value to value, and of the smallest discrepancy, which neighbouring values share. Errors that all values of a sensor
+//! share, such as its calibration, are not included: see [`noise`](super::noise). The module of each kind of run reads
+//! the measurement and predicts it.
 
 // Sensors as signals of a model.
 mod sensor;

@@ -1,13 +1,13 @@
 //! Maximum a posteriori fit of model parameters and sensor errors by least squares.
 //!
-//! The residuals are those of all fitted runs over their noise, and the nuisance coefficients over their prior standard
-//! deviations. Held-out runs are never used.
+//! The residuals are those of all fitted runs over their noise, and the distances of nuisance coefficients and
+//! parameters from the centres of their priors over the prior standard deviations. Held-out runs are never used.
 //!
 //! A rig shakes both sides of a car and its sensors are averaged over them, while a cleat run records one side. The two
 //! corners of an axle differ by one or two percent, which shifts the modes of the after-shake by more than its noise.
 //! So each free parameter with a unit has a factor of its own on the recorded side, limited by a prior. A ratio belongs
-//! to the design, and both sides share it. If a ratio that is 1 without an effect could differ between the sides, an
-//! effect could act on one side alone.
+//! to the design, and both sides share it. Otherwise an effect whose ratio is 1 on one side could act on the other side
+//! alone.
 
 // Priors of parameters and sides.
 mod prior;

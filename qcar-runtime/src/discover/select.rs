@@ -89,7 +89,7 @@ pub fn discover(
         }
     }
     let (discovery, found) = search(base, None, evidence, progress);
-    // A large missing effect hides the noise of the inputs, so it is tested again with the answer.
+    // A large missing effect can hide the noise of the inputs, so the filtered inputs are tested again with the answer.
     let quieter = quieter.filter(|quieter| {
         let again = found.again(&quieter.evidence);
         again.is_some_and(|log_evidence| is_more_probable(log_evidence, &found, evidence))
@@ -175,9 +175,9 @@ fn search(base: Set, mut known: Option<Set>, evidence: &Evidence, progress: Prog
     (discovery, sets.swap_remove(found))
 }
 
-/// True if a model of records alone leaves no more than noise in any run. The uncertainty of a record includes half a
-/// percent of the response, as the smallest error of any model, and what an effect gains below that comes from noise in
-/// the recorded inputs, hum, or drift.
+/// True if all runs are records and the model leaves no more than noise in the fitted and in the held-out ones. The
+/// uncertainty of a record includes half a percent of the response, as the smallest error of any model. What an effect
+/// gains below that comes from noise of the recorded inputs, mains hum or drift.
 fn lacks_nothing(base: &Set, evidence: &Evidence) -> bool {
     let is_record = |run: &Run| matches!(run.stimulus, Stimulus::History { .. });
     let leaves_noise = !leaves_more_than_noise(base, evidence) && excess(&base.explanation, evidence) <= 0.0;
@@ -269,8 +269,8 @@ fn second(sets: &[Set]) -> Option<usize> {
     most_probable(sets, open).filter(|_| extended.len() < BEAM)
 }
 
-/// The most probable set, if it has several effects, leaves more than noise, and the other forms of its effects have not
-/// been tried yet.
+/// The most probable set, if it has several effects, leaves more than noise, and the other forms of its effects have
+/// not been tried yet.
 fn with_untried_forms(sets: &[Set], evidence: &Evidence) -> Option<usize> {
     let best = best(sets);
     let set = &sets[best];
@@ -323,9 +323,10 @@ fn report(set: &Set, progress: Progress<'_>) {
     }
 }
 
-/// Start points of the base model, as in [`setting_spread`].
+/// Start points of the base model, as in [`setting_spread`]: the given values, and two about a third of the way to the
+/// bounds. A choice.
 const SPREAD: [f64; 3] = [0.0, 0.35, -0.35];
-/// Rounds and evaluations of the base fit on coarse, medium and fine data.
+/// Rounds and evaluations of the base fit on coarse, medium and fine data. A choice.
 const BASE: [(usize, usize); 3] = [(2, 10), (2, 10), (2, 20)];
 
 /// The fitted base model. Searches from several start points on coarse data and refines the best on finer data.
@@ -392,7 +393,7 @@ fn reductions(set: &Set, base: &Set, evidence: &Evidence, progress: Progress<'_>
         .collect()
 }
 
-/// Rounds and evaluations of a fit without an effect.
+/// Rounds and evaluations of a fit without an effect: those of the last round of a race.
 const WITHOUT: (usize, usize) = (2, 15);
 
 /// The set without one of its effects, by position; `None` if it cannot be assembled or fitted.

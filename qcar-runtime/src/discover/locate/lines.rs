@@ -150,7 +150,8 @@ impl Lines {
     }
 }
 
-/// Weighted mean of the runs for each line. All runs have the grid of the longest, or its beginning.
+/// Weighted mean of the runs for each line. Assumes that all runs begin with the same frequencies, so that a line has
+/// the same position in each of them.
 fn mean(each: &[Vec<Estimate>]) -> Vec<Estimate> {
     let longest = each.iter().map(Vec::len).max().unwrap_or(0);
     let of_line = |line: usize| {

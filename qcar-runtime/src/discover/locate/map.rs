@@ -12,7 +12,8 @@ use crate::discover::posterior::Refit;
 use crate::model::Model;
 use crate::response::parameters::Values;
 
-/// Finite change of a parameter that determines `H(s,F)`, relative to its value.
+/// Finite change of a parameter that determines `H(s,F)`, relative to its value. In a linear model any change gives the
+/// same `H(s,F)`. This one exceeds the tolerance of a harmonic balance by far.
 const FINITE: f64 = 0.3;
 
 /// κ at every place of the model, the best explanation first.

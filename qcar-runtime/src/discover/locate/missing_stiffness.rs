@@ -32,12 +32,12 @@ pub struct MissingStiffness {
 pub struct RunStiffness {
     /// Position in [`Evidence::runs`](crate::discover::Evidence::runs).
     pub run: usize,
-    /// Level of the run.
+    /// Level of the run: peak velocity of the pad, m/s.
     pub level: f64,
     /// Frequencies, Hz.
     pub frequency: Vec<f64>,
     /// Added dynamic stiffness, N/m; for a sensor, the factor on its signal minus 1.
     pub value: Vec<Complex<f64>>,
-    /// Standard deviation of each value.
+    /// Standard deviation of each value, in its unit.
     pub sigma: Vec<f64>,
 }

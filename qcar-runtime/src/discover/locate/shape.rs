@@ -41,17 +41,20 @@ impl Shape {
     }
 }
 
-/// Smallest share of κ that a kind of law must explain.
+/// Smallest share of κ that a kind of law must explain: the same choice as for
+/// [`Numbers::explained`](crate::discover::numbers::Numbers::explained).
 const LEAST_SHARE: f64 = 0.8;
-/// Largest ratio of its residual to that of the best kind.
+/// Largest ratio of its residual to that of the best kind, a choice. Of all kinds within it the first one is taken,
+/// which has the fewest parameters.
 const COMPARABLE: f64 = 1.5;
-/// Relative difference between levels beyond which κ counts as level-dependent.
+/// Relative difference between levels beyond which κ counts as level-dependent, a choice.
 const LEVEL_DEPENDENT: f64 = 0.5;
 /// Smallest relative uncertainty of κ, since the classification is coarse.
 const LEAST_UNCERTAINTY: f64 = 0.05;
-/// Natural and relaxation frequencies that are tried, Hz.
+/// Natural and relaxation frequencies that are tried, Hz: about two in an octave of a rig's band, more around wheel
+/// hop.
 const FREQUENCIES: [f64; 13] = [1.0, 1.5, 2.2, 3.3, 4.7, 6.8, 10.0, 12.0, 15.0, 22.0, 33.0, 47.0, 100.0];
-/// Damping ratios that are tried.
+/// Damping ratios that are tried: a lightly, a moderately and a well damped mount.
 const RATIOS: [f64; 3] = [0.05, 0.15, 0.4];
 
 /// Classifies a κ.

@@ -22,6 +22,7 @@ impl Straight {
 
     /// `a` and its standard deviation; zero and infinity without data.
     pub fn solve(&self) -> (Complex<f64>, f64) {
+        // Below this relative determinant, all positions are equal up to rounding errors.
         const SINGULAR: f64 = 1e-12;
         let [w0, w1, w2] = self.weight;
         let determinant = w0 * w2 - w1 * w1;

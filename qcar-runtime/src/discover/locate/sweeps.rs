@@ -17,7 +17,7 @@ pub struct Sweeps {
     pub squared_residual: f64,
 }
 
-/// Relative uncertainty added to every value before κ is computed. A wrong model that is fitted closely would
+/// Relative uncertainty added to every value before κ is computed, a choice. A wrong model that is fitted closely would
 /// distribute its error over all its parameters.
 const TOLERANCE: f64 = 0.1;
 

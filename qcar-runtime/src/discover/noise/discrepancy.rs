@@ -7,8 +7,8 @@
 //! whitens its residuals by the Cholesky factor of the covariance `diag σ² + τ² K`. The correlation is zero beyond a
 //! finite distance (Wendland, Advances in Computational Mathematics 4, 1995), so the factor is banded and cheap.
 //!
-//! On a clean simulated campaign every `τ` goes to zero and residuals are in units of noise. On hardware `τ` measures
-//! the error of the model. The same formula applies to both.
+//! On a clean simulated campaign every `τ` goes to its smallest value, mostly zero, and residuals are in units of
+//! noise. On hardware `τ` measures the error of the model. The same formula applies to both.
 
 // Banded symmetric matrix with its Cholesky factor.
 mod banded;

@@ -1,9 +1,9 @@
 //! Systematic sensor errors as nuisance parameters with a prior. They are equal in all runs.
 //!
 //! A calibrated accelerometer is wrong by 0.5 to 1 % in gain and by a few tenths of a degree in phase, smoothly in
-//! frequency. If it were noise, it would count as a hundred independent signs of a small effect. As a nuisance
-//! parameter, it is estimated together with the model parameters, and only errors beyond every calibration remain in
-//! the residual. The error of a sensor is `exp(Σ_k c_k φ_k(f))` with real coefficients `c_k ~ N(0, σ_k²)`;
+//! frequency. Treated as independent noise of a hundred lines, it would be strong evidence for a small effect. As a
+//! nuisance parameter, it is estimated together with the model parameters, and only errors beyond every calibration
+//! remain in the residual. The error of a sensor is `exp(Σ_k c_k φ_k(f))` with real coefficients `c_k ~ N(0, σ_k²)`;
 //! time histories also have an offset.
 
 use nalgebra::Complex;
@@ -26,11 +26,11 @@ pub struct Nuisance {
     pub shelves: usize,
     /// Accuracy class of the calibration curves.
     pub accuracy: AccuracyClass,
-    /// What a fit takes for known about the sensors.
+    /// What a fit takes as known about the sensors.
     pub known: Known,
     /// Suspected errors beyond the calibration.
     pub suspects: Vec<Suspect>,
-    /// RMS reading of each sensor over all records; zero without any.
+    /// RMS reading of each sensor over all records whose mean is compared; zero without any.
     pub reads: Vec<f64>,
     /// Sensors whose records have no offset, each with the parameter or state of the model that acts as one.
     pub without_offset: Vec<(Point, String)>,
@@ -38,7 +38,7 @@ pub struct Nuisance {
     pub initial_states: Vec<InitialState>,
 }
 
-/// What a fit takes for known about the sensors.
+/// What a fit takes as known about the sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Known {
     /// Nothing: it estimates the errors of the sensors and their accuracy class.
@@ -213,7 +213,7 @@ impl Nuisance {
     }
 }
 
-/// RMS of all records of a sensor; 0 without records.
+/// RMS of all records of a sensor whose mean is compared; 0 without any.
 fn reads(evidence: &Evidence, sensor: &Point) -> f64 {
     let is_it = |series: &&Series| {
         let passes_mean = evidence.runs[series.run].stimulus.passes_mean();

@@ -103,7 +103,7 @@ impl Nuisance {
                 );
                 slopes
             }
-            // Over a wide band only the mean gain matters.
+            // A calibration curve and a phase belong to one frequency. Over a wide band only the mean gain matters.
             Kind::Time | Kind::Passage | Kind::Travel | Kind::Width | Kind::Speed | Kind::Cycle(_) => {
                 self.mean_gains(&series.sensor).map(constant).collect()
             }

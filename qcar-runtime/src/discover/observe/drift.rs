@@ -6,9 +6,10 @@ use nalgebra::Complex;
 
 use super::{Delay, Evidence, Kind, PredictError, Prediction, Run, Series, Stimulus};
 
-/// Smallest distance between these times, s: long against the period of every mode of an axle.
+/// Smallest distance between these times, s: three periods of a body mode at 1 Hz, the slowest mode of an axle.
 const SPACING: f64 = 3.0;
-/// Largest number of these times. The change between two of them counts as linear.
+/// Largest number of these times, a choice: a prediction takes this many times as long. Predictions are taken as linear
+/// between two of them.
 const MOST_TIMES: usize = 6;
 
 /// Prediction of a run, interpolated from predictions `at` a part of the run (0 to 1) and the length of the run (s).
@@ -37,14 +38,14 @@ pub fn through(
 }
 
 impl Evidence {
-    /// Longest run, s.
+    /// Duration of the longest run, s.
     pub fn longest(&self) -> f64 {
         let runs = self.runs.iter();
         runs.map(|run| length(&run.stimulus)).fold(0.0, f64::max)
     }
 }
 
-/// Duration of the motion, s.
+/// Duration of the motion, s; 0 for tests whose values have no time.
 fn length(stimulus: &Stimulus) -> f64 {
     match stimulus {
         Stimulus::Sweep { time, .. } => time.iter().copied().fold(0.0, f64::max),

@@ -1,10 +1,10 @@
 //! Removes the noise of recorded inputs where it hides the excitation.
 //!
-//! A simulation takes the noise of a recorded input for excitation, to which the machine never responded. At frequencies
-//! where the input is mostly noise, the model then predicts a response that was not measured, and any effect that
-//! filters the input seems to be missing. The Wiener filter weights each frequency by the share of its
+//! A simulation treats the noise of a recorded input as excitation, although the machine never responded to it. At
+//! frequencies where the input is mostly noise, the model then predicts a response that was not measured, and any
+//! effect that filters the input seems to be missing. The Wiener filter weights each frequency by the share of its
 //! power that is not noise (Wiener, N.: Extrapolation, interpolation, and smoothing of stationary time series, 1949).
-//! It is the best estimate of the true input.
+//! It gives the estimate of the true input with the least mean square error.
 
 use std::f64::consts::TAU;
 
@@ -23,7 +23,7 @@ use crate::response::parameters::Values;
 use crate::spectrum::{synthesize, transform};
 use crate::transmissibility::Point;
 
-/// Spectral lines to each side over which the power is averaged.
+/// Spectral lines to each side over which the power is averaged: the mean of 33 lines of noise scatters by a quarter.
 const AROUND: usize = 16;
 /// Seed of the draw, so that each search gives the same answer.
 const SEED: u64 = 1;
@@ -37,8 +37,9 @@ pub struct Quieter {
 }
 
 impl Quieter {
-    /// The data with the noise of all recorded inputs removed; `None` if it is below that of a 12-bit converter
-    /// everywhere. Only the responses can show whether it is noise, since an excitation may be white as well.
+    /// The data with the noise of all recorded inputs removed; `None` if the removed part of every input is below the
+    /// noise of a 12-bit converter. Only the responses can show whether that part is noise, since an excitation may be
+    /// white too.
     pub fn of(evidence: &Evidence) -> Option<Self> {
         let (mut quieter, mut drawn) = (evidence.clone(), evidence.clone());
         let mut random = SplitMix::new(SEED);
@@ -73,8 +74,8 @@ impl Quieter {
         })
     }
 
-    /// The filtered data. The uncertainty of each response includes that of its input: the RMS of what the model makes
-    /// of the noise that the filter leaves.
+    /// The filtered data. The uncertainty of each response includes that of its input: the RMS of the model's response
+    /// to the noise that the filter leaves.
     ///
     /// # Errors
     /// Fails if the model lacks a measured quantity.
@@ -121,7 +122,8 @@ fn without_noise(samples: &[f64], periodic: bool, random: &mut SplitMix) -> [Vec
 }
 
 /// One period of a signal through the Wiener filter for white noise of this standard deviation, and a draw of the noise
-/// that the filter leaves. At each frequency, the share of the noise power that is left equals the share of the signal.
+/// that the filter leaves. At each frequency, the filter leaves the share of the noise power that the signal has of the
+/// whole power.
 fn filtered(period: &[f64], noise: f64, random: &mut SplitMix) -> [Vec<f64>; 2] {
     let mut lines = transform(period);
     let noise = noise.powi(2) * period.len() as f64;
@@ -138,8 +140,9 @@ fn filtered(period: &[f64], noise: f64, random: &mut SplitMix) -> [Vec<f64>; 2] 
     [synthesize(&lines, period.len()), synthesize(&left, period.len())]
 }
 
-/// Share of the power around a line that is not noise; zero if the power could be noise alone. The lines of a
-/// mirrored signal have one degree of freedom, so the standard deviation of the power of noise is √2 times its mean.
+/// Share of the power around a line that is not noise; zero if the power could be noise alone. The lines of a mirrored
+/// signal have one degree of freedom, so the standard deviation of the power of noise is √2 times its mean. Those of a
+/// periodic signal have two, which makes the test stricter than it needs to be.
 fn share_of_signal(power: &[f64], noise: f64) -> f64 {
     let count = power.len() as f64;
     let mean = power.iter().sum::<f64>() / count;

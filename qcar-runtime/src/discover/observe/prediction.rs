@@ -12,7 +12,7 @@ use crate::simulate::SimulateError;
 /// A free parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Free {
-    /// Its position among the parameters of the model; it leads its ties.
+    /// Its position among the parameters of the model. It is the leader if other parameters are tied to it.
     pub parameter: usize,
     /// Lower bound, SI.
     pub lower: f64,
@@ -21,11 +21,11 @@ pub struct Free {
 }
 
 impl Free {
-    /// Change of the parameter for a finite difference: this part of its value, or near zero of a hundredth of its
-    /// range. Negative where the upper bound is closer than that.
+    /// Change of the parameter for a finite difference: `part` of its value, or of a hundredth of its typical size if
+    /// that is larger. Negative where the upper bound is closer than that.
     pub(super) fn change(&self, value: f64, part: f64) -> f64 {
         const OF_RANGE: f64 = 1e-2;
-        // A positive range may span many decades, so its width is no measure of the parameter.
+        // A positive range may span many decades, so its geometric mean is typical, not its width.
         let typical = if self.lower > 0.0 {
             self.lower.sqrt() * self.upper.sqrt()
         } else {

@@ -30,8 +30,9 @@ pub struct Run {
     pub name: String,
     /// Its role: fitted or held out.
     pub role: Role,
-    /// Level of its excitation, in the unit of the test: peak velocity (m/s) of a sweep, RMS of a history's input,
-    /// height (m) of an obstacle, largest travel (m) of a K&C cycle, highest speed (m/s) of a dynamometer.
+    /// Level of its excitation, in the unit of the test: peak velocity (m/s) of a sweep, standard deviation of a
+    /// history's first input (or of its first response without inputs), height (m) of an obstacle, largest travel (m)
+    /// of a K&C cycle, amplitude (m) of a K&C sine, highest speed (m/s) of a dynamometer.
     pub level: f64,
     /// Its excitation.
     pub stimulus: Stimulus,

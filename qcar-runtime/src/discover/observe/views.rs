@@ -10,7 +10,7 @@ use super::series::Series;
 const MOST_SHORTENED: usize = 2;
 
 impl Evidence {
-    /// Adds a share of every value to its uncertainty, for a model that is known to lack an effect.
+    /// Adds a share of every value in quadrature to its uncertainty, for a model that is known to lack an effect.
     pub fn with_tolerance(&self, share: f64) -> Self {
         let mut tolerant = self.clone();
         for series in &mut tolerant.series {

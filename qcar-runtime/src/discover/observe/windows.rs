@@ -16,9 +16,9 @@ use super::series::Series;
 use crate::campaign::Quantity;
 use crate::transmissibility::Point;
 
-/// Most windows of a record. They are evenly spaced.
+/// Most windows of a record, evenly spaced. A choice: each window has initial states of its own, which a fit estimates.
 const MOST_WINDOWS: usize = 16;
-/// Fewest compared values of each sensor in a window.
+/// Fewest compared values of each sensor in a window: more than the initial position and velocity can reproduce.
 const FEWEST_VALUES: usize = 4;
 /// Samples at either end of a window that are not compared, because the band limit of the inputs is inaccurate there.
 const ENDS: usize = 4;
@@ -120,9 +120,9 @@ fn inside(series: &Series, times: &Range<f64>) -> Series {
     own
 }
 
-/// Reading of a sensor of a position or a velocity at a time (s), and of a position also the velocity. Both are those of
-/// the parabola through a sixteenth of a period on either side (Savitzky, A., Golay, M. J. E.: Analytical Chemistry 36,
-/// 1964). Empty if the sensor has too few values so near.
+/// Reading of a position or velocity sensor at a time (s), and for a position sensor the velocity too. They come from a
+/// parabola fitted to the values within a sixteenth of a period on either side (Savitzky, A., Golay, M. J. E.:
+/// Analytical Chemistry 36, 1964). Empty for other sensors, and if there are too few values so near.
 fn motion_at(series: &Series, time: f64) -> Vec<(Point, f64)> {
     let [first, .., last] = series.at[..] else {
         return Vec::new();

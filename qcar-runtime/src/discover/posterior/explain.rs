@@ -53,7 +53,7 @@ pub struct Explanation {
 }
 
 impl Explanation {
-    /// Mean square of the fitted residuals, at least 1; 1 if only noise is left.
+    /// As [`Refit::scatter`].
     pub fn scatter(&self) -> f64 {
         self.refit.scatter()
     }

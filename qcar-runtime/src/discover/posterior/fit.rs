@@ -56,8 +56,8 @@ pub struct Start<'a> {
 }
 
 /// Maximum a posteriori fit of the free and nuisance parameters together with the discrepancy. It runs `rounds`
-/// searches of at most `evaluations` each, which end at a predicted gain of `decrement`, and learns the discrepancy from
-/// the residuals after each search.
+/// searches of at most `evaluations` each, which end at a predicted gain of `decrement`, and learns the discrepancy
+/// from the residuals after each search.
 ///
 /// # Errors
 /// Fails if the model lacks a measured quantity.

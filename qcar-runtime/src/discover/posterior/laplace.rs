@@ -57,8 +57,8 @@ impl Posterior<'_> {
     }
 
     /// Laplace approximation of the log evidence, in units in which every prior has standard deviation 1. The
-    /// normalisations of priors and posterior then cancel, except for the determinant (MacKay 2003, chapter 28). NaN
-    /// without a discrepancy.
+    /// normalisations of priors and posterior then cancel, except for the determinant (MacKay, D. J. C.: Information
+    /// theory, inference, and learning algorithms, 2003, chapter 28). NaN without a discrepancy.
     fn log_evidence(&self, outcome: &Outcome) -> f64 {
         let Some(discrepancy) = &self.discrepancy else {
             return f64::NAN;

@@ -36,12 +36,12 @@ pub struct Tile {
     pub kind: Kind,
     /// Position of its run in the evidence.
     pub run: usize,
-    /// Level of the run.
+    /// Level of the run, in the unit of [`Run::level`](crate::discover::observe::Run::level).
     pub level: f64,
     /// Role of the run.
     pub role: Role,
-    /// First and last position: a sixth of an octave, Hz, for harmonics; a twentieth of the range of the series for all
-    /// others.
+    /// First and last abscissa, in the unit of [`Kind`]: a sixth of an octave for harmonics; a twentieth of the range
+    /// of the series for all others.
     pub span: (f64, f64),
     /// RMS of the residuals.
     pub strength: f64,

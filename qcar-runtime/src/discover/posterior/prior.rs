@@ -7,7 +7,8 @@ use crate::model::Model;
 pub const SIDE: f64 = 0.015;
 
 /// Standard deviation of the weak prior around the start, as a log ratio: a factor of ten. For a range that reaches
-/// zero it is the width of the range. This prior keeps parameters that the data hardly determine near their start.
+/// zero or negative values it is the width of the range. This prior keeps parameters that the data hardly determine
+/// near their start. A choice.
 const WEAK: f64 = std::f64::consts::LN_10;
 
 impl Free {

@@ -49,8 +49,8 @@ pub struct Posterior<'a> {
     has_predicted: bool,
     /// Non-steady part of the sweeps, series by series.
     pub unsteady: Vec<Vec<Complex<f64>>>,
-    /// Cache of the last prediction and of the last one with derivatives, which an accepted step and the next round use
-    /// again.
+    /// The last prediction and the last one with derivatives. The evaluation of an accepted step and the next round use
+    /// them again.
     pub cache: Vec<Cached>,
 }
 

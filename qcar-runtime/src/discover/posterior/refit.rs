@@ -32,7 +32,8 @@ pub struct Refit {
     pub nuisance: Nuisance,
     /// Their coefficients.
     pub coefficients: Vec<f64>,
-    /// Standard errors of the coefficients, not scaled by [`Self::scatter`]; NaN for one that nothing determines.
+    /// Standard errors of the coefficients, followed by those of the log factors of the recorded side. Not scaled by
+    /// [`Self::scatter`]; NaN for one that nothing determines.
     pub coefficient_stderr: Vec<f64>,
     /// Sum of squares of all residuals, priors included.
     pub chi2: f64,
@@ -74,7 +75,7 @@ impl Refit {
         if factor.is_finite() { factor } else { 0.0 }
     }
 
-    /// Mean square of the fitted residuals, at least 1; 1 if only noise is left.
+    /// Sum of squares of all residuals, priors included, over the number of data residuals; at least 1.
     pub fn scatter(&self) -> f64 {
         (self.chi2 / self.residuals as f64).max(1.0)
     }

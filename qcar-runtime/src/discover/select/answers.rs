@@ -68,9 +68,11 @@ fn represented_by(place: usize, sets: &[Set], supported: &[usize]) -> usize {
 }
 
 /// The credible set: the most probable names that together reach the required probability, without names that only add
-/// effects to another member. It is the base model alone if the probability of the base model exceeds the accepted
-/// probability of error, or if dismissed names are more probable than all others. Something else is then missing, unless
-/// the held-out runs refute these names in favour of the most probable others.
+/// effects to another member.
+///
+/// It is the base model alone if the probability of the base model exceeds the accepted probability of error. It also
+/// is if dismissed names are more probable than all others, since something else is then missing; except if the
+/// held-out runs refute all of these names in favour of the most probable ones that are not dismissed.
 pub fn credible(sets: &[Set], answers: &[Answer], evidence: &Evidence) -> Vec<usize> {
     let numbers = &evidence.numbers;
     let is_named = |own: &&Answer| !sets[own.set].names().is_empty();

@@ -265,8 +265,8 @@ impl<'a> Hypothesis<'a> {
         self.model
     }
 
-    /// Data residuals at a place, in units of the noise, with the calibration and the non-steady part of `refit`; `None`
-    /// if one is not finite.
+    /// Data residuals at a place, in units of the noise, with the calibration and the non-steady part of `refit`;
+    /// `None` if one is not finite.
     pub fn residuals_at(&self, place: &Place, refit: &Refit, evidence: &Evidence) -> Option<DVector<f64>> {
         let values = self.values(&place.named).ok()?;
         let mut side = values.clone();

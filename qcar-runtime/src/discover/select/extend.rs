@@ -15,8 +15,9 @@ use crate::discover::noise::AccuracyClass;
 use crate::discover::observe::Evidence;
 use crate::discover::posterior::Refit;
 
-/// Fitted sets with one more effect. If the set explains the data well, or a learned law leads it, a candidate must
-/// pass the screening: its gain must exceed the false-alarm threshold and the `lead` of the law. Empty if none does.
+/// Fitted sets with one more effect. If the set explains the data well, or a learned law leads it, at least one
+/// candidate must pass the screening: its gain must exceed the false-alarm threshold and the `lead` of the law. Empty
+/// if none does.
 pub fn extensions(set: &Set, lead: f64, evidence: &Evidence, progress: Progress<'_>) -> Vec<Set> {
     let candidates = set.assembly.candidates();
     progress(Update::Step(&format!(
@@ -58,8 +59,8 @@ pub struct SearchStart {
 }
 
 impl SearchStart {
-    /// For a set that is nearly right. A missing effect makes the sensors seem worse than they are, so a search starts
-    /// with sensors as accurate as their data sheets.
+    /// For a set that is nearly right. A missing effect makes the sensors seem less accurate than they are, so a search
+    /// starts with sensors as accurate as their data sheets.
     pub fn of(set: &Set, steady: &Evidence) -> Self {
         let fidelity = Fidelity::of(steady);
         let own = &set.explanation.refit;
@@ -76,8 +77,8 @@ impl SearchStart {
         }
     }
 
-    /// For a set that leaves much: then a simulation of whole records says little about what is missing. `None` without
-    /// records that can be cut into windows.
+    /// For a set that leaves a large residual: the phase errors that add up over whole records then hide what is
+    /// missing. `None` without records that can be cut into windows.
     pub fn in_windows(set: &Set, steady: &Evidence) -> Option<Self> {
         let fidelity = Fidelity::in_windows(steady)?;
         let hypothesis = set.assembly.hypothesis();

@@ -6,7 +6,7 @@ use crate::discover::observe::{Evidence, Stimulus};
 /// Line decimation of sweeps in the coarse and the medium data.
 pub const DECIMATION: [usize; 2] = [6, 3];
 /// Mean periods in a window of the coarse and the medium data. A window of two periods determines the stiffness and the
-/// damping of what moves in it, and a frequency that is wrong by a quarter has not lost its phase at the end.
+/// damping of what moves in it. If a frequency is wrong by a quarter, the phase error at its end is only half a period.
 const PERIODS: [f64; 2] = [2.0, 8.0];
 
 /// The data at three fidelities.
@@ -20,8 +20,8 @@ pub struct Fidelity {
     /// True if the coarse data have windows of records instead of their beginning.
     pub has_windows: bool,
     /// Windows of records between those of the coarse and of the medium data, and between these and whole records, each
-    /// twice as long as the ones before. The frequency that a fit to short windows leaves wrong must not lose a period
-    /// in the next ones.
+    /// twice as long as the ones before. A fit to short windows leaves a small frequency error. In windows that are
+    /// much longer it would grow to a phase error of a whole period, and the search would end in a local minimum.
     pub longer: [Vec<Evidence>; 2],
 }
 

@@ -1,5 +1,5 @@
 //! Learns one law at one place before pairs and triples of effects are tried. If the law explains the excess residual
-//! and no single effect does, few sets of effects can still become more probable.
+//! and no single effect does, only the few sets of effects that could still become more probable need a fit.
 
 use super::learn::{is_supported, with_law};
 use super::set::{Set, best_base, explained_share};

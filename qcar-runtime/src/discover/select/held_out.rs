@@ -6,9 +6,9 @@ use crate::discover::observe::Evidence;
 use crate::discover::posterior::Explanation;
 
 /// The set itself, or the part of it that remains after unsupported effects are removed. A smaller set replaces the set
-/// if it predicts the held-out runs at least as well, if the additional effects explain too little of its excess
-/// residual, if one of them has a parameter at its bound, or if only the cleat runs along one axis prefer the set. The last
-/// two checks need no held-out runs.
+/// if it predicts the held-out runs at least as well, if it has effects and the additional ones explain too little of
+/// its excess residual, if one of these has a parameter at its bound, or if only the cleat runs along one axis prefer
+/// the set. The last two checks need no held-out runs. A set with a magnitude at its bound replaces no other.
 pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
     let has_held_out = evidence.of_role(Role::HeldOut).next().is_some();
     loop {
@@ -33,13 +33,14 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
     }
 }
 
-/// True if a set predicts the held-out runs better than another set with the same sensors, or if no run is held out.
-/// With sensors of its own, a set that lacks an effect can take them for so inaccurate that its prediction seems as
-/// good.
+/// True if a set predicts the held-out runs better than another set with the same sensor errors, or if no run is held
+/// out. With sensor errors of its own, a set that lacks an effect could attribute its residual to inaccurate sensors,
+/// and its prediction would then seem as good.
 ///
-/// A set that explains nearly all of the residual predicts better whatever its score. The score takes the discrepancy of
-/// the fitted runs for that of the held-out ones. If a motion depends so much on its start that small errors of the
-/// parameters grow, the held-out runs show more, and the score prefers a set that is wrong everywhere.
+/// A set that explains nearly all of the residual counts as better whatever its score. The score assumes that the
+/// discrepancy of the held-out runs is that of the fitted ones. If the motion is sensitive to its initial state, small
+/// parameter errors grow along a record and the discrepancy of the held-out runs is larger. The score then prefers a
+/// set that is wrong in the fitted runs too, because that set has a large discrepancy already.
 pub fn predicts_better(set: &Set, other: &Set, evidence: &Evidence) -> bool {
     let none_held_out = evidence.of_role(Role::HeldOut).next().is_none();
     let score = |own: &Explanation| log_score(own, evidence);
@@ -48,7 +49,8 @@ pub fn predicts_better(set: &Set, other: &Set, evidence: &Evidence) -> bool {
         || explained_share(other, set, evidence) >= evidence.numbers.certain()
 }
 
-/// True if a less probable set is certainly more probable than a set once the held-out runs count as data too.
+/// True if `other` is certainly more probable than `set` once the held-out runs count as data too, even if it is less
+/// probable on the fitted runs. False if no run is held out.
 pub fn is_refuted(set: &Set, other: &Set, evidence: &Evidence) -> bool {
     if evidence.of_role(Role::HeldOut).next().is_none() {
         return false;
@@ -57,9 +59,9 @@ pub fn is_refuted(set: &Set, other: &Set, evidence: &Evidence) -> bool {
     with_held_out(other) - with_held_out(set) > evidence.numbers.odds_of_certain().ln()
 }
 
-/// True if a set with inaccurate sensors is not certainly more probable than a part of it without the cleat runs along
-/// some axis. No sensor is less accurate than its data sheet by that much, so the model is wrong in another way. An error
-/// of the tyre law is common to all these runs, which are then no more than one sign of an effect.
+/// True if a set with inaccurate sensors is not certainly more probable than a part of it once the gain of the cleat
+/// runs along some axis is left out. Sensors that are less accurate than their data sheets are a sign of another model
+/// error. An error of the tyre law is common to all cleat runs, so their agreement is no independent evidence.
 fn rests_on_passages(set: &Set, part: &Set, evidence: &Evidence) -> bool {
     let of_passages = |own: &Set| own.explanation.log_likelihoods_of_passages(evidence);
     if !set.has_inaccurate_sensors() {

@@ -36,8 +36,8 @@ pub fn learn(base: &Set, first: Option<Set>, plain: &Set, evidence: &Evidence, p
         best = Some(more);
     }
     let best = best.map(|laws| without_needless_law(laws, base, plain, evidence));
-    // The held-out score neglects the parameter uncertainty of the law, which makes it too strict outside the range of
-    // the fitted runs. If an effect is missing, a law that explains most of the excess residual is still useful.
+    // The held-out score neglects the parameter uncertainty of the law, so it is too strict outside the range of the
+    // fitted runs. If an effect is missing, a law that explains most of the excess residual is still useful.
     let explains_most = |best: &Set| explained_share(base, best, evidence) >= evidence.numbers.explained();
     best.filter(|best| is_supported(best, base, evidence) || is_missing(base, evidence) && explains_most(best))
 }

@@ -15,7 +15,8 @@ use crate::discover::posterior::{Explanation, Given, Refit, Setting};
 use crate::fit::starts;
 use crate::least_squares::Bounds;
 
-/// Rounds and evaluations of the searches: of all starts, of the best half of them, and of the remaining minima.
+/// Rounds and evaluations of the searches: of all starts, of the best half of them, and of the remaining minima. A
+/// choice that limits the time.
 const SEARCHES: [(usize, usize); 3] = [(1, 8), (1, 30), (2, 30)];
 /// Rounds and evaluations of the final fit.
 const FINAL: (usize, usize) = (3, 60);

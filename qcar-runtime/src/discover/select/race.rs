@@ -1,7 +1,7 @@
 //! Selects the best of many candidates by successive halving on the evidence (Jamieson and Talwalkar, AISTATS 2016).
 //!
-//! Each round roughly doubles the budget and halves the number of candidates. A candidate stays as long as its last
-//! search gained at least the distance of its evidence to the best.
+//! Each round roughly doubles the budget and halves the number of candidates. Besides the few best, a candidate stays
+//! only if its last search gained at least the difference between its log evidence and the best.
 
 use std::collections::{BTreeMap, HashSet};
 
@@ -29,6 +29,7 @@ struct Round {
     starts: usize,
 }
 
+/// The rounds. Their numbers are choices: each has about twice the work for each candidate and fewer candidates.
 const ROUNDS: [Round; 4] = [
     Round {
         evidence: |all| &all.coarse,
@@ -60,10 +61,10 @@ const ROUNDS: [Round; 4] = [
     },
 ];
 
-/// Log evidence difference up to which a candidate stays before the last round, whatever its search gained: odds of one
-/// to twenty thousand.
+/// Log evidence difference up to which a candidate counts as no worse than the best, whatever its search gained: odds
+/// of one to twenty thousand. A search that gained more than this before its limit of evaluations has not converged.
 const NOT_SEPARATED: f64 = 10.0;
-/// Number of candidates with the largest gain that enter, whatever their place and form.
+/// Number of candidates with the largest gain that enter, whatever their place and form. A choice.
 const ENTRANTS: usize = 6;
 /// Factor on the number of evaluations that are cheap: those of a linear model, and of records in windows. Without it,
 /// a light mass on mounts would be dropped before the fit finds its mode.
@@ -154,11 +155,11 @@ pub fn race(
     (finalists.collect(), dropped)
 }
 
-/// Candidates for the first round: those with the largest gains, the best of each place, and the best of each form of
+/// Candidates for the first round: those with the largest gains, the best at each place, and the best of each form of
 /// each effect. Only effects that gain at a place in some form enter. Rank alone does not decide, because the model's
-/// parameters may have to change much before the right effect gains much: the screening shows that something is missing,
-/// the fits show what. Nuisance effects enter at every place even without a gain: every real axle has them, and another
-/// effect must not explain their part of the residual.
+/// parameters may have to change much before the right effect gains much: the screening shows that something is
+/// missing, the fits show what. Nuisance effects enter at every place even without a gain: every real axle has them,
+/// and another effect must not explain their part of the residual.
 pub fn entrants<'p>(candidates: &[Candidate], screened: &'p [Screened]) -> Vec<&'p Screened> {
     let effect = |entry: &Screened| {
         let own = &candidates[entry.candidate];
@@ -253,7 +254,7 @@ fn best<'a>(
         let name = (own.effect.as_str(), own.at.as_str());
         let known = names.contains(&name);
         let behind = first - runner.evidence();
-        // A candidate further behind than its last search gained will hardly become the best.
+        // A candidate will hardly make up more in the next search than it gained in the last one.
         let improves = behind <= runner.gained().max(NOT_SEPARATED);
         let is_best_there = !late && !places.contains(&name.1);
         let is_of_beam = names.len() < BEAM;
@@ -312,7 +313,7 @@ mod tests {
         }
     }
 
-    /// The friction ranks behind all that enter by their gain, and enters as the best of its form, `with_memory` even
+    /// The friction ranks below all that enter by their gain, and enters as the best of its form, `with_memory` even
     /// without a gain. The stop has no gain and stays out. The bending has none either, but it is a nuisance effect and
     /// enters at both places.
     #[test]

@@ -35,7 +35,8 @@ pub struct Entrant {
     pub starts: Vec<Place>,
 }
 
-/// Number of candidates, those with the largest gain, that start from several points.
+/// Number of candidates, those with the largest gain, that start from several points. This and the numbers below are
+/// choices that limit the time of a search.
 const WITH_ALL_STARTS: usize = 3;
 /// Number of start points of such a candidate. The others have one.
 const STARTS: usize = 3;
@@ -92,7 +93,8 @@ impl<'a> Screening<'a> {
         all
     }
 
-    /// `None` if the candidate cannot be predicted or can be imitated by the present unknowns.
+    /// `None` if the candidate cannot be predicted, or if the present unknowns can reproduce its change of the
+    /// residuals.
     fn screened(&self, place: usize, candidate: &Candidate) -> Option<Screened> {
         let hypothesis = self.assembly.hypothesis_with(candidate)?;
         let tried = grid(candidate).into_par_iter();
@@ -135,8 +137,8 @@ impl<'a> Screening<'a> {
         entering.par_iter().enumerate().map(entrant).collect()
     }
 
-    /// The trials with the largest true gain. The first-order gain supposes that all other unknowns change along, so a
-    /// start changes them too if it then gains more.
+    /// The trials with the largest true gain. The first-order gain assumes that all other unknowns change with the
+    /// candidate, so a start changes them too if it then gains more.
     fn starts(&self, trials: &[Trial], candidate: &Candidate, count: usize) -> Vec<Place> {
         let Some(hypothesis) = self.assembly.hypothesis_with(candidate) else {
             return Vec::new();
@@ -317,7 +319,8 @@ impl Point {
     }
 
     /// A value at the scale of this point. If the strength is a mass, stiffness, damping or force, so that the force of
-    /// the effect `scales` with it, all such parameters change along: then its frequencies, travels and speeds stay.
+    /// the effect `scales` with it, all such parameters are scaled too: the effect then keeps its frequencies, travels
+    /// and speeds.
     fn scaled(&self, own: &Added, value: f64, scales: bool) -> f64 {
         let scaled = match own.role {
             ParameterRole::Strength { vanishes_at } if vanishes_at.is_infinite() => value / self.scale,
@@ -353,8 +356,8 @@ impl Point {
     }
 }
 
-/// True for a strength in proportion to which the forces of its effect are, if the others of [`Added::scales_force`]
-/// change along.
+/// True for a strength to which the forces of its effect are proportional, if all parameters with
+/// [`Added::scales_force`] are scaled by the same factor.
 fn is_force_strength(own: &Added) -> bool {
     own.role == ParameterRole::Strength { vanishes_at: 0.0 } && own.scales_force
 }

@@ -13,7 +13,7 @@ use crate::discover::numbers::{Numbers, ONE_SIDED};
 use crate::discover::observe::{Evidence, Series};
 use crate::discover::posterior::{Explanation, Refit};
 
-/// Rounds and evaluations of a fit to other evidence from a known optimum.
+/// Rounds and evaluations of a fit to other evidence from a known optimum. A choice, ample so near an optimum.
 const AGAIN: (usize, usize) = (2, 20);
 
 #[derive(Clone)]
@@ -75,8 +75,9 @@ impl Set {
         })
     }
 
-    /// Explanation by this set with the sensor errors of another set, if that one needs better sensors. Without an
-    /// effect, the sensors seem worse than they are, and then the effect would seem to explain too little.
+    /// Explanation by this set with the sensor errors of another set, if this set's own fit estimates less accurate
+    /// sensors than the other's. A set that lacks an effect attributes part of its residual to the sensors, and then
+    /// the effect would seem to explain too little. It is the set's own explanation if the fit fails.
     pub fn with_sensors_of(&self, other: &Set, evidence: &Evidence) -> Cow<'_, Explanation> {
         if self.accuracy() <= other.accuracy() {
             return Cow::Borrowed(&self.explanation);
@@ -162,9 +163,9 @@ impl Set {
 
     /// True if an effect that `part` lacks has a magnitude at its bound: it then imitates another effect.
     ///
-    /// With a shape parameter at its bound, an effect can imitate almost any other. This counts too if `part` already
-    /// has effects, since they leave little residual for a further one. It also counts if the effect replaces a
-    /// parameter of the model, which is then at its bound, and more than noise is left.
+    /// With a shape parameter at its bound, an effect can imitate almost any other. This counts in two cases. Either
+    /// `part` already has effects, which leave little residual for a further one. Or this set leaves more than noise,
+    /// and the effect takes over the role of a parameter that `part` fits inside its range and this set at its bound.
     pub fn adds_effect_at_bound(&self, part: &Set, evidence: &Evidence) -> bool {
         let replaces_parameter = || leaves_more_than_noise(self, evidence) && self.sends_parameter_to_bound(part);
         let has_other_causes = !part.names().is_empty() || replaces_parameter();
@@ -221,8 +222,8 @@ impl Set {
     }
 }
 
-/// Adds a set, unless it is there already with a better fit: several searches may find the same model, whose probability
-/// counts once.
+/// Adds a set, unless it is there already with a better fit: several searches may find the same model, whose
+/// probability counts once.
 pub fn keep_best(own: Set, sets: &mut Vec<Set>) {
     match sets.iter_mut().find(|known| known.has_same_effects(&own)) {
         Some(known) if known.log_posterior() >= own.log_posterior() => (),
@@ -268,8 +269,8 @@ pub fn leaves_more_than_noise(set: &Set, evidence: &Evidence) -> bool {
     square.is_nan() || square > 1.0 + ONE_SIDED * scatter
 }
 
-/// Share of the excess residual of `before` that `after` explains with the same sensors, on the held-out runs. It is
-/// negative, and at least -1, if `after` leaves more.
+/// Share of the [`excess`] residual of `before` that `after` explains with the same sensor errors. It is negative, and
+/// at least -1, if `after` leaves more; it is 1 if neither leaves any.
 pub fn explained_share(before: &Set, after: &Set, evidence: &Evidence) -> f64 {
     let before = before.with_sensors_of(after, evidence);
     let left = excess(&after.explanation, evidence) / excess(&before, evidence).max(f64::MIN_POSITIVE);

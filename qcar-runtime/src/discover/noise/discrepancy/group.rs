@@ -48,11 +48,11 @@ impl Key {
     }
 }
 
-/// Steps of the search for `τ`.
+/// Steps of the search for `τ`: they leave an interval of 3 % of `τ`.
 const STEPS: usize = 12;
-/// Smallest nonzero `τ` of the search.
+/// Smallest nonzero `τ` of the search, below the noise of a 12-bit converter.
 const SMALLEST_TAU: f64 = 1e-4;
-/// Largest `τ` of the search.
+/// Largest `τ` of the search: such a model explains nothing of the signal.
 const LARGEST_TAU: f64 = 2.0;
 
 impl Group {

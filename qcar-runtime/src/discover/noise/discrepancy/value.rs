@@ -52,7 +52,7 @@ fn places(series: &Series, numbers: &Numbers) -> Vec<f64> {
         .collect()
 }
 
-/// Distance between two records, so that they are uncorrelated.
+/// Distance between two records, in correlation lengths, so that they are uncorrelated: longer than any record.
 const RECORDS_APART: f64 = 1e6;
 
 /// Signal that scales the discrepancy of each value: for harmonics, the first harmonic of the same sensor at the same

@@ -24,9 +24,10 @@ const DURATION: f64 = 1.0;
 pub const TIMING: f64 = 5e-3;
 /// Largest time by which one sensor may lead the others, s.
 const AHEAD: f64 = 0.01;
-/// Error of any tyre model on an edge, and difference between the two sensors of a pair, as a share of the envelope.
+/// Error of any tyre model on an edge, and difference between the two sensors of a pair, as a share of the envelope. A
+/// choice.
 const SHARE: f64 = 0.025;
-/// Error as a share of the RMS of the record, so that a record without noise has an uncertainty too.
+/// Error as a share of the RMS of the record, so that a record without noise has an uncertainty too. A choice.
 const FLOOR: f64 = 0.002;
 /// Number of values to each side for the envelope, an RMS over one period of wheel hop.
 const AROUND: usize = 10;

@@ -17,7 +17,8 @@ use crate::simulate::{Car, Drive, Method, Settings, SimulateError, Variant, ride
 
 /// Integration method; its error is far below that of a tyre model.
 const METHOD: Method = Method::Adaptive(3e-6);
-/// Change of a parameter relative to its value, along which derivatives are taken.
+/// Change of a parameter relative to its value, along which derivatives are taken: small enough for a linear response,
+/// and large against rounding errors.
 const DIFFERENCE: f64 = 3e-3;
 /// Gauss-Newton steps for the shift; the first one achieves nearly all.
 const STEPS: usize = 4;

@@ -14,7 +14,7 @@ use crate::model::{About, InputKind, Matrix, Model, Quantity};
 use crate::response::parameters::Values;
 use crate::solver::{DormandPrince, Settings, System};
 
-/// Most cycles. A force that still changes after them is used unchanged.
+/// Most cycles. A force that still changes after them is used as it is.
 const CYCLES: usize = 20;
 /// Relative change of the force from cycle to cycle that counts as a repetition.
 const REPEATS: f64 = 1e-6;
@@ -22,9 +22,9 @@ const REPEATS: f64 = 1e-6;
 const RELATIVE: f64 = 1e-8;
 /// Absolute tolerance of the states, in their units.
 const ABSOLUTE: f64 = 1e-7;
-/// Number of steps of a cycle.
+/// Fewest integration steps of a cycle.
 const STEPS: f64 = 40.0;
-/// Most integration steps.
+/// Most integration steps of one cycle; beyond them the force counts as NaN.
 const MOST_STEPS: usize = 50_000;
 
 pub fn forces(

@@ -1,4 +1,4 @@
-//! A model on a K&C rig: the body is held, the wheel follows a path, and the masses between them find their equilibrium.
+//! A model on a K&C rig: the body is held, the wheel follows a path, and the masses between them stay in equilibrium.
 //!
 //! The rig is slow, so the inertia of these masses is neglected: the forces on each of them balance. Laws with
 //! memory (dry friction, relaxing branches, dampers in series with springs) are integrated by the implicit Euler

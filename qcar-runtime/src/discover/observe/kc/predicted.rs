@@ -15,7 +15,7 @@ const SLOW: f64 = 1e-4;
 const SHORTEST: f64 = 1e-3;
 /// Number of instants on the way to an end of the travel, and from there to the first value.
 const APPROACH: usize = 6;
-/// Parts of a sine. Half a cycle comes first, so that friction starts as in every later cycle.
+/// Parts of a cycle of a sine. Half a cycle comes first, so that friction starts as in every later cycle.
 const PARTS: usize = 48;
 /// Number of parts after a reversal that are divided further, because friction reverses within a fraction of a
 /// millimetre.

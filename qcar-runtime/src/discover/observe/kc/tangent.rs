@@ -104,7 +104,7 @@ impl Tangent {
     /// Moves the derivatives of the free states over `h` s, and returns that of the rig's force.
     fn follow(&mut self, drive: &Drive<'_>, factor: Option<&Rc<Factor>>, by_parameter: &[f64], h: f64) -> f64 {
         let bench = drive.bench;
-        // A change of the states that persists changes no speed.
+        // A change that the states keep from the last instant shifts both ends of the step, so it changes no speed.
         let mut rates = DVector::zeros(bench.free.len());
         for of in bench.slopes.iter().filter(|of| !of.of_speed) {
             rates[of.row] += drive.nonzeros[of.entry] * self.x[of.column];

@@ -15,7 +15,7 @@ pub struct Passage {
     pub tyre: Tyre,
     /// Static load of the tyre, N.
     pub load: f64,
-    /// Duration of the evidence, s after the wheel centre passes x = 0.
+    /// End of the simulated passage, s after the wheel centre passes x = 0.
     pub duration: f64,
     /// Sampling of the record by weighted means.
     pub means: Means,

@@ -30,7 +30,8 @@ const RATIO: f64 = 0.05;
 const LINES_APART: f64 = 6.0;
 
 /// Relative error of the first harmonic from the estimator (see
-/// [`Estimator::LOCAL`](crate::transmissibility::Estimator)) and from differences between the sides of a car.
+/// [`Estimator::LOCAL`](crate::transmissibility::Estimator)) and from differences between the sides of a car. For the
+/// higher harmonics it is the smallest discrepancy, relative to the first.
 const FLOOR: f64 = 0.002;
 
 /// Relative difference of the first harmonic between the mean of two sides and one side with mean parameters. If
@@ -153,8 +154,8 @@ fn is_above_noise(series: &Series) -> bool {
 
 /// Frequencies whose neighbourhoods overlap little: equally spaced at low frequencies, in equal ratios above.
 fn grid((first, last): (f64, f64), spacing: f64) -> Vec<f64> {
-    /// Distance from the ends of the band as a frequency ratio. The ends of a sweep are faded, and the noise cannot be
-    /// estimated beyond them.
+    /// Distance from the lower end of the band as a frequency ratio; its square root at the upper end. The ends of a
+    /// sweep are faded, and the noise cannot be estimated beyond them.
     const INSIDE: f64 = 1.2;
     let next = |f: &f64| Some(f + (RATIO * f).max(LINES_APART * spacing));
     std::iter::successors(Some(first * INSIDE), next)

@@ -11,13 +11,13 @@ use std::f64::consts::LN_2;
 use crate::mean::rms;
 use crate::spectrum::{Trend, Window, transform};
 
-/// Highest share of the spectrum, which counts as noise.
+/// Share of the spectrum, at its upper end, that counts as noise.
 const HIGHEST: f64 = 0.1;
-/// Number of parts of a record that are tested for rest.
+/// Number of parts of a record that are tested for rest. A choice, like the limits below.
 const PARTS: usize = 20;
 /// Fewest samples of a part.
 const FEWEST: usize = 20;
-/// Scatter of a signal at rest, relative to its scatter over the whole record.
+/// Largest scatter of a signal at rest, relative to its scatter over the whole record.
 const REST: f64 = 0.005;
 /// Largest share of the inputs' power that does not repeat in a record with several periods.
 const REPEATS: f64 = 1e-4;

@@ -71,7 +71,7 @@ fn middle(y: &[f64], rate: f64) -> f64 {
     line.unwrap_or(0).max(1) as f64 * rate / y.len() as f64
 }
 
-/// Number of windows of a held-out record.
+/// Number of windows of a held-out record. A choice.
 const WINDOWS: usize = 20;
 
 /// Initial states and restarts of a model for a record with these responses; `rate` in Hz.

@@ -18,11 +18,12 @@ pub struct Measurement {
     pub evidence: Evidence,
 }
 
-/// Peak velocities of the dynamometer sines, m/s.
+/// Peak velocities of the dynamometer sines, m/s: those of a stroke of 100 mm at 10, 25, 50, 75, 100, 150 and 200
+/// rev/min.
 const SPEEDS: [f64; 7] = [0.05, 0.13, 0.26, 0.39, 0.52, 0.79, 1.05];
 /// Amplitude of the dynamometer sines, m.
 const AMPLITUDE: f64 = 0.05;
-/// Relative uncertainty of the dynamometer forces.
+/// Relative uncertainty of the dynamometer forces, a choice.
 const UNCERTAINTY: f64 = 0.01;
 /// Factor on the amplitude of a second dynamometer test, which determines the inner states of a law.
 const SHORT_STROKE: f64 = 0.1;

@@ -52,7 +52,7 @@ fn group(places: &[f64], scale: f64) -> Group {
     )
 }
 
-/// The dense covariance as a reference.
+/// The reference is the dense covariance.
 #[test]
 fn whitening_is_the_inverse_root_of_the_covariance() {
     let places: Vec<f64> = (0..30)
