@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use qcar_dsl::check::Checked;
 use qcar_dsl::compile::{derive, derive_alone};
-use qcar_dsl::difference::moves_alike;
+use qcar_dsl::difference::Motion;
 use qcar_dsl::patch::{NewParameter, Patch, Patched, Signal};
 use qcar_dsl::response::Wanted;
 use qcar_machine::Machine;
@@ -125,7 +125,7 @@ impl Bench {
         let patched = patches.par_iter();
         let of_patch = |patch: &Patch| {
             let nuisance = patch.effect().nuisance;
-            let apart = told_apart(patch.candidates(&self.model, &values)).into_iter();
+            let apart = told_apart(patch, patch.candidates(&self.model, &values)).into_iter();
             apart.flat_map(move |patched| self.candidates_at(patched, nuisance))
         };
         patched.flat_map_iter(of_patch).collect()
@@ -237,17 +237,19 @@ fn alone(campaign: &Campaign) -> Vec<(String, String)> {
     links
 }
 
-/// Removes forms that are equivalent to an earlier one in this model: on a strut that is fixed to the upright, friction
-/// of the damper is friction between wheel and body.
-fn told_apart(patched: Vec<Patched>) -> Vec<Patched> {
-    let mut apart: Vec<Patched> = Vec::new();
-    for own in patched {
-        let is_same = |other: &Patched| other.place == own.place && moves_alike(&other.model, &own.model);
-        if own.form.is_none() || !apart.iter().any(is_same) {
-            apart.push(own);
-        }
-    }
-    apart
+/// Removes forms that are equivalent to an earlier one in this model, also at another place: on a strut that is fixed to
+/// the upright, friction of the damper is friction between wheel and body, which is no friction of the tyre.
+fn told_apart(patch: &Patch, patched: Vec<Patched>) -> Vec<Patched> {
+    let rank = |own: &Patched| patch.forms().position(|form| Some(form) == own.form.as_deref());
+    let motions: Vec<Motion> = patched.iter().map(|own| Motion::of(&own.model)).collect();
+    let is_first = |place: usize| {
+        let order = |other: usize| (rank(&patched[other]), other);
+        let same = (0..patched.len()).filter(|&other| motions[other] == motions[place]);
+        patched[place].form.is_none() || same.min_by_key(|&other| order(other)) == Some(place)
+    };
+    let first: Vec<bool> = (0..patched.len()).map(is_first).collect();
+    let kept = patched.into_iter().zip(first).filter(|(_, first)| *first);
+    kept.map(|(own, _)| own).collect()
 }
 
 fn added(parameter: &NewParameter) -> Added {

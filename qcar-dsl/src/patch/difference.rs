@@ -72,9 +72,17 @@ pub fn difference(first: &Checked, second: &Checked) -> Difference {
     }
 }
 
-/// True if two models have the same equations of motion, however their links are written.
-pub fn moves_alike(first: &Checked, second: &Checked) -> bool {
-    changes(&equations(first), &equations(second)).is_empty()
+/// The equations of motion of a model, however its links are written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Motion(Lines);
+
+impl Motion {
+    /// The equations in an order that does not depend on that of the text.
+    pub fn of(model: &Checked) -> Self {
+        let mut lines = equations(model);
+        lines.sort_unstable();
+        Self(lines)
+    }
 }
 
 /// The statements of a kind, each with its direction.

@@ -49,8 +49,7 @@ pub use query::Values;
 use roles::Roles;
 pub use scale::Scale;
 
-use crate::check::Checked;
-use crate::check::check_text;
+use crate::check::{Checked, Unseen, check_text};
 use crate::derive::identifiability;
 use crate::diagnostic::{Diagnostic, Report, Severity, effects};
 use crate::front::syntax::{Effect, File, Item, Name};
@@ -280,7 +279,7 @@ impl Patch {
         };
         let model = check_text(text, &|_, path| Err(format!("{path} is not part of a patched model")))?;
         let model = identifiability::with_identifiability(model);
-        if model.unseen().iter().any(|unseen| !before.unseen().contains(unseen)) {
+        if model.unseen().iter().any(|own| hides_more(own, before.unseen())) {
             let mut report = model.warnings().clone();
             report
                 .diagnostics
@@ -388,4 +387,13 @@ impl Patched {
         let comments: String = comments.map(|line| format!("// {line}\n")).collect();
         format!("{comments}{}", self.model.text())
     }
+}
+
+/// True if a group has more undetermined combinations than the groups of the unpatched model in it. Otherwise its new
+/// parameters are determined once those of the model are: if only ratios of masses and stiffnesses are seen, one known
+/// mass gives all of them.
+fn hides_more(group: &Unseen, before: &[Unseen]) -> bool {
+    let hidden = |own: &Unseen| own.parameters.len() - own.seen;
+    let is_inside = |own: &&Unseen| own.parameters.iter().all(|name| group.parameters.contains(name));
+    hidden(group) > before.iter().filter(is_inside).map(hidden).sum()
 }
