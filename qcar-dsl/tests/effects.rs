@@ -566,20 +566,70 @@ fn without_a_wheel_a_link_is_a_mount_too() {
 
 /// On a test rig without a road, a resonator may sit on any mass that is not the heaviest, whose hidden parts are those of
 /// a body.
-#[test]
-fn without_a_wheel_a_resonator_sits_on_any_other_mass() {
-    let text = "axle stack { \"Three masses on a table\"
-        param m: kg = 1 in 0.1..10 \"Mass\"; param k: N/m = 1e4 in 1..1e6 \"Stiffness\";
-        direction z {
-            motion table; mass low = 3 * m; mass middle = m; mass top = 2 * m;
-            link first: low - table { spring k; } link second: middle - low { spring k; } link third: top - middle { spring k; }
-            output top.acceleration;
-        } }";
+fn written(text: &str) -> Checked {
     let source = Source {
-        name: "stack.axle".into(),
+        name: "written.axle".into(),
         text: text.into(),
     };
-    let stack = check(source, &load).unwrap_or_else(|report| panic!("{report}"));
+    check(source, &load).unwrap_or_else(|report| panic!("{report}"))
+}
+
+/// Without a known mass, the accelerations on a shaker show only ratios. An effect adds no further freedom, so a campaign
+/// that states one mass determines its parameters too.
+#[test]
+fn effects_apply_where_the_outputs_show_only_ratios() {
+    let text = "axle rig { \"A wheel and a body on a post\"
+        param m_wheel: kg = 40 in 5..200; MASS param m_body: kg = 300 in 50..1e3;
+        param k: N/m = 2e4 in 1e3..2e5; param c: N s/m = 1500 in 100..2e4; param k_tire: N/m = 2e5 in 2e4..1e6;
+        direction z {
+            motion post; mass wheel = m_wheel; mass body = m_body;
+            link tire: wheel - post { spring k_tire; } link spring: body - wheel { spring k; }
+            link damper: body - wheel { damper c; }
+            output wheel.acceleration; output body.acceleration;
+        } }";
+    let [free, known] = ["", "known"].map(|word| written(&text.replace("MASS", word)));
+    for patch in effects() {
+        assert_eq!(
+            patch.places(&free),
+            patch.places(&known),
+            "{}",
+            patch.effect().name.text
+        );
+    }
+    assert_eq!(effect("series_compliance").places(&free), ["damper"]);
+}
+
+/// A link may end at a named point of several coordinates, or the sum may stand in its stretch: both are a suspension.
+#[test]
+fn a_named_point_of_a_pitching_body_is_an_end_of_the_suspension() {
+    let text = "axle pitching { \"A body that pitches on one wheel\"
+        known param m: kg = 400; known param j: kg m^2 = 500; known param l: m = 1.3;
+        param mw: kg = 40 in 10..100; param k: N/m = 25e3 in 1e3..1e5;
+        param c: N s/m = 1500 in 1..1e4; param kt: N/m = 2e5 in 5e4..5e5;
+        direction z {
+            road pad; mass body = m; inertia pitch = j; mass wheel = mw;
+            point nose = body + l*pitch;
+            link tyre: wheel - pad { spring kt; } link rear: body - l*pitch { spring 20e3 N/m; damper 1e3 N s/m; }
+            link front: NOSE - wheel { spring k; damper c; }
+            output wheel.acceleration; output nose.acceleration;
+        } }";
+    for name in ["coulomb_friction", "digressive_damper", "progressive_spring"] {
+        let places = ["nose", "body + l*pitch"].map(|nose| effect(name).places(&written(&text.replace("NOSE", nose))));
+        assert!(places[0].contains(&"front".to_string()), "{name}: {:?}", places[0]);
+        assert_eq!(places[0], places[1], "{name}");
+    }
+}
+
+#[test]
+fn without_a_wheel_a_resonator_sits_on_any_other_mass() {
+    let text = "axle stack { \"Three masses on a shaker\"
+        param m: kg = 1 in 0.1..10 \"Mass\"; param k: N/m = 1e4 in 1..1e6 \"Stiffness\";
+        direction z {
+            motion shaker; mass low = 3 * m; mass middle = m; mass top = 2 * m;
+            link first: low - shaker { spring k; } link second: middle - low { spring k; } link third: top - middle { spring k; }
+            output top.acceleration;
+        } }";
+    let stack = written(text);
     assert_eq!(effect("secondary_resonator").places(&stack), ["middle", "top"]);
     assert_eq!(effect("suspended_mass").places(&stack), ["low"]);
     assert_eq!(effect("secondary_resonator").places(&model("quarter_car")), ["wheel"]);

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::model_tree::{ModelTree, coordinates, links};
 use super::rewrite::names_in;
-use crate::front::syntax::{CoordinateKind, Direction, Dotted, Link};
+use crate::front::syntax::{CoordinateKind, Direction, Dotted, Expression, Link};
 
 /// A link with the points of its own direction that it connects.
 pub struct Joint<'a> {
@@ -65,22 +65,32 @@ impl<'a> Graph<'a> {
     }
 }
 
+/// The coordinates of the link's own direction in its stretch. A point stands for the coordinates that it is made of.
 fn ends(base: &ModelTree, direction: &str, link: &Link) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
-    names_in(&link.stretch, &mut |name| {
-        found.extend(own_point(base, direction, name));
-    });
+    add_coordinates(base, direction, &link.stretch, &mut found);
     found
 }
 
-fn own_point(base: &ModelTree, direction: &str, name: &Dotted) -> Option<String> {
-    let point = match name.names.as_slice() {
-        [point] => point,
-        [home, point] if home.text == direction => point,
-        _ => return None,
-    };
-    let coordinate = base.coordinate(direction, &point.text)?;
-    Some(coordinate.name.text.clone())
+fn add_coordinates(base: &ModelTree, direction: &str, of: &Expression, found: &mut BTreeSet<String>) {
+    names_in(of, &mut |name| {
+        let Some(point) = own_point(direction, name) else {
+            return;
+        };
+        match (base.coordinate(direction, point), base.point(direction, point)) {
+            (Some(coordinate), _) => drop(found.insert(coordinate.name.text.clone())),
+            (None, Some(target)) => add_coordinates(base, direction, target, found),
+            (None, None) => (),
+        }
+    });
+}
+
+fn own_point<'n>(direction: &str, name: &'n Dotted) -> Option<&'n str> {
+    match name.names.as_slice() {
+        [point] => Some(&point.text),
+        [home, point] if home.text == direction => Some(&point.text),
+        _ => None,
+    }
 }
 
 fn is_tyre(direction: &Direction, link: &Link) -> bool {

@@ -110,19 +110,25 @@ impl ModelTree {
 
     /// The coordinate that a point renames, directly or through other points; any other name is returned unchanged.
     pub fn pointed_at(&self, direction: &str, name: &str) -> String {
-        let target = self.direction(direction).and_then(|direction| {
-            direction.body.iter().find_map(|statement| match statement {
-                Statement::Point(point, target) if point.text == name => match &target.kind {
-                    ExpressionKind::Name(target) => target.names.last(),
-                    _ => None,
-                },
-                _ => None,
-            })
-        });
+        let target = match self.point(direction, name).map(|target| &target.kind) {
+            Some(ExpressionKind::Name(target)) => target.names.last(),
+            _ => None,
+        };
         match target {
             Some(target) => self.pointed_at(direction, &target.text),
             None => name.to_string(),
         }
+    }
+
+    /// The expression of a named point; `None` if there is no such point.
+    pub fn point(&self, direction: &str, name: &str) -> Option<&Expression> {
+        self.direction(direction)?
+            .body
+            .iter()
+            .find_map(|statement| match statement {
+                Statement::Point(point, target) if point.text == name => Some(target),
+                _ => None,
+            })
     }
 
     /// True if the model declares outputs.
