@@ -1,13 +1,16 @@
 //! Models with effects added, for discovery: patched, compiled and ready to run.
 
+// Equivalent models.
+mod motion_samples;
+
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use qcar_dsl::check::Checked;
 use qcar_dsl::compile::{derive, derive_alone};
-use qcar_dsl::difference::Motion;
 use qcar_dsl::patch::{NewParameter, Patch, Patched, Signal};
 use qcar_dsl::response::Wanted;
+use qcar_dsl::schedule::Compiled;
 use qcar_machine::Machine;
 use qcar_runtime::campaign::{Axis, Campaign, Parameter, Test};
 use qcar_runtime::discover::Evidence;
@@ -16,6 +19,8 @@ use qcar_runtime::discover::noise::Form;
 use qcar_runtime::discover::posterior::{Given, Setting};
 use qcar_runtime::model::Model;
 use rayon::prelude::*;
+
+use motion_samples::MotionSamples;
 
 use crate::effects::Catalogue;
 use crate::failure::Failure;
@@ -60,7 +65,7 @@ impl Bench {
         alone: Arc<Vec<(String, String)>>,
     ) -> Self {
         Bench {
-            running: Arc::new(run(&model, &alone)),
+            running: Arc::new(run(&derive(model.clone()), &alone)),
             model,
             catalogue,
             values,
@@ -125,15 +130,17 @@ impl Bench {
         let patched = patches.par_iter();
         let of_patch = |patch: &Patch| {
             let nuisance = patch.effect().nuisance;
-            let apart = told_apart(patch, patch.candidates(&self.model, &values)).into_iter();
-            apart.flat_map(move |patched| self.candidates_at(patched, nuisance))
+            let patched = patch.candidates(&self.model, &values).into_iter();
+            let compiled = patched.map(|own| (derive(own.model.clone()), own)).collect();
+            let apart = told_apart(patch, compiled).into_iter();
+            apart.flat_map(move |(compiled, patched)| self.candidates_at(&compiled, patched, nuisance))
         };
         patched.flat_map_iter(of_patch).collect()
     }
 
     /// The candidates of a patched model. A location that is given without an axis also stands for its sensors of all
     /// axes.
-    fn candidates_at(&self, patched: Patched, nuisance: bool) -> Vec<Candidate> {
+    fn candidates_at(&self, compiled: &Compiled, patched: Patched, nuisance: bool) -> Vec<Candidate> {
         let Some(signal) = patched.signals.first() else {
             return vec![Candidate {
                 effect: patched.effect,
@@ -147,7 +154,7 @@ impl Bench {
                         .filter(|p| p.is_new || !p.known)
                         .map(added)
                         .collect(),
-                    model: Box::new(run(&patched.model, &self.alone)),
+                    model: Box::new(run(compiled, &self.alone)),
                 },
             }];
         };
@@ -214,11 +221,10 @@ impl Workshop for Bench {
 }
 
 /// The runnable model, with models of its links that are measured alone.
-fn run(model: &Checked, alone: &[(String, String)]) -> Machine {
-    let whole = Machine::new(&derive(model.clone()));
-    let derived = |(axis, link): &(String, String)| derive_alone(model, axis, link);
+fn run(compiled: &Compiled, alone: &[(String, String)]) -> Machine {
+    let derived = |(axis, link): &(String, String)| derive_alone(&compiled.model, axis, link);
     let alone = alone.iter().filter_map(|own| Some((own, derived(own)?)));
-    alone.fold(whole, |whole, ((axis, link), alone)| {
+    alone.fold(Machine::new(compiled), |whole, ((axis, link), alone)| {
         whole.with_alone(axis, link, &alone)
     })
 }
@@ -238,17 +244,21 @@ fn alone(campaign: &Campaign) -> Vec<(String, String)> {
 }
 
 /// Removes forms that are equivalent to an earlier one in this model, also at another place: on a strut that is fixed to
-/// the upright, friction of the damper is friction between wheel and body, which is no friction of the tyre.
-fn told_apart(patch: &Patch, patched: Vec<Patched>) -> Vec<Patched> {
+/// the upright, friction between wheel and body is friction of the damper, whatever other link it is tried at.
+fn told_apart(patch: &Patch, all: Vec<(Compiled, Patched)>) -> Vec<(Compiled, Patched)> {
+    if patch.forms().next().is_none() {
+        return all;
+    }
     let rank = |own: &Patched| patch.forms().position(|form| Some(form) == own.form.as_deref());
-    let motions: Vec<Motion> = patched.iter().map(|own| Motion::of(&own.model)).collect();
+    let ranks: Vec<Option<usize>> = all.iter().map(|(_, own)| rank(own)).collect();
+    let samples: Vec<MotionSamples> = all.iter().map(|(compiled, _)| MotionSamples::of(compiled)).collect();
     let is_first = |place: usize| {
-        let order = |other: usize| (rank(&patched[other]), other);
-        let same = (0..patched.len()).filter(|&other| motions[other] == motions[place]);
-        patched[place].form.is_none() || same.min_by_key(|&other| order(other)) == Some(place)
+        let mut before = (0..all.len()).filter(|&other| (ranks[other], other) < (ranks[place], place));
+        let changes_sensors = !all[place].1.signals.is_empty();
+        changes_sensors || before.all(|other| !samples[other].agree_with(&samples[place]))
     };
-    let first: Vec<bool> = (0..patched.len()).map(is_first).collect();
-    let kept = patched.into_iter().zip(first).filter(|(_, first)| *first);
+    let first: Vec<bool> = (0..all.len()).map(is_first).collect();
+    let kept = all.into_iter().zip(first).filter(|(_, first)| *first);
     kept.map(|(own, _)| own).collect()
 }
 

@@ -7,21 +7,26 @@ use std::sync::Arc;
 use qcar::catalogue::compiled;
 use qcar::effects;
 use qcar::workshop::Bench;
+use qcar_dsl::check::Checked;
+use qcar_dsl::source::Source;
 use qcar_runtime::campaign::{Campaign, Role};
 use qcar_runtime::discover::candidate::Workshop;
 use qcar_runtime::discover::observe::predict;
 use qcar_runtime::discover::{Evidence, Free};
 use qcar_runtime::response::parameters::Values;
 
-fn forms(model: &str, effect: &str) -> Vec<String> {
+fn candidates(model: Checked, effect: &str) -> Vec<(String, Option<String>)> {
     let catalogue = effects::catalogue().map_err(|_| "the catalogue reads").unwrap();
-    let model = compiled(model).map_err(|_| "the model compiles").unwrap().model;
     let bench = Bench::new(model, Arc::new(catalogue), Arc::new(BTreeMap::new()));
-    let own = bench
-        .candidates()
-        .into_iter()
-        .filter(|candidate| candidate.effect == effect);
-    own.filter_map(|candidate| candidate.form).collect()
+    let all = bench.candidates().into_iter();
+    let own = all.filter(|candidate| candidate.effect == effect);
+    own.map(|candidate| (candidate.at, candidate.form)).collect()
+}
+
+fn forms(model: &str, effect: &str) -> Vec<String> {
+    let model = compiled(model).map_err(|_| "the model compiles").unwrap().model;
+    let all = candidates(model, effect).into_iter();
+    all.filter_map(|(_, form)| form).collect()
 }
 
 /// Past a strut on the upright, friction is friction between wheel and body: the same is not tried twice.
@@ -30,6 +35,35 @@ fn forms_that_come_to_the_same_are_tried_once() {
     let (inside, across, beside) = ("in_damper", "across_strut", "between_wheel_and_body");
     assert_eq!(forms("axle_c", "coulomb_friction"), [inside, across]);
     assert_eq!(forms("axle_d", "coulomb_friction"), [inside, across, beside]);
+}
+
+/// On a post without a road, the tyre is a link like any other. Friction between wheel and body is that of the damper,
+/// and must not be named at the tyre.
+#[test]
+fn a_form_that_is_equivalent_at_another_place_is_not_tried() {
+    let text = "
+axle on_a_post {
+    known param m: kg = 300; param m_wheel: kg = 40 in 5..200; param k: N/m = 2e4 in 1e3..2e5;
+    param c: N s/m = 1500 in 100..2e4; param k_tire: N/m = 2e5 in 2e4..1e6; param c_tire: N s/m = 100 in 1..5e3;
+    direction z {
+        motion post;
+        mass wheel = m_wheel;
+        mass body = m;
+        link tire: wheel - post { spring k_tire; damper c_tire; }
+        link spring: body - wheel { spring k; }
+        link damper: body - wheel { damper c; }
+        output wheel.acceleration;
+        output body.acceleration;
+    }
+}";
+    let source = Source {
+        name: "on_a_post.axle".into(),
+        text: text.into(),
+    };
+    let model = qcar_dsl::compile::check(source, &|_, _| Err("one file".into())).unwrap();
+    let inside = Some("in_damper".to_string());
+    let expected = ["tire", "damper"].map(|at| (at.to_string(), inside.clone()));
+    assert_eq!(candidates(model, "coulomb_friction"), expected);
 }
 
 /// A damper whose seals slip within a stroke, beside a parameter that is tied to another.

@@ -72,19 +72,6 @@ pub fn difference(first: &Checked, second: &Checked) -> Difference {
     }
 }
 
-/// The equations of motion of a model, however its links are written.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Motion(Lines);
-
-impl Motion {
-    /// The equations in an order that does not depend on that of the text.
-    pub fn of(model: &Checked) -> Self {
-        let mut lines = equations(model);
-        lines.sort_unstable();
-        Self(lines)
-    }
-}
-
 /// The statements of a kind, each with its direction.
 fn lines(tree: &ModelTree, belongs: Belongs) -> Lines {
     let outside = tree.axle.body.iter().map(|statement| (String::new(), statement));
