@@ -83,10 +83,12 @@ pub fn credible(sets: &[Set], answers: &[Answer], evidence: &Evidence) -> Vec<us
         .sum();
     let possible = answers.iter().filter(|own| is_named(own) && !own.dismissed);
     let most_probable = possible.clone().next();
-    let is_refuted = |own: &Answer| most_probable.is_some_and(|by| is_refuted(&sets[own.set], &sets[by.set], evidence));
+    let base = best_base(sets);
+    let is_refuted =
+        |own: &Answer| most_probable.is_some_and(|by| is_refuted(&sets[own.set], &sets[by.set], &sets[base], evidence));
     let mut before = answers.iter().take_while(|own| own.dismissed);
     if none > numbers.error_probability || !before.all(is_refuted) {
-        return vec![best_base(sets)];
+        return vec![base];
     }
     let all: f64 = possible.clone().map(|own| own.probability).sum();
     let mut sum = 0.0;

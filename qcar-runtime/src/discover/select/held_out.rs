@@ -49,14 +49,12 @@ pub fn predicts_better(set: &Set, other: &Set, evidence: &Evidence) -> bool {
         || explained_share(other, set, evidence) >= evidence.numbers.certain()
 }
 
-/// True if `other` is certainly more probable than `set` once the held-out runs count as data too, even if it is less
-/// probable on the fitted runs. False if no run is held out.
-pub fn is_refuted(set: &Set, other: &Set, evidence: &Evidence) -> bool {
-    if evidence.of_role(Role::HeldOut).next().is_none() {
-        return false;
-    }
+/// True if a set fits the fitted runs alone: it predicts the held-out runs no better than the base model, and `other` is
+/// certainly more probable than it once they count as data too.
+pub fn is_refuted(set: &Set, other: &Set, base: &Set, evidence: &Evidence) -> bool {
     let with_held_out = |own: &Set| own.log_posterior() + log_score(&own.explanation, evidence);
-    with_held_out(other) - with_held_out(set) > evidence.numbers.odds_of_certain().ln()
+    !predicts_better(set, base, evidence)
+        && with_held_out(other) - with_held_out(set) > evidence.numbers.odds_of_certain().ln()
 }
 
 /// True if a set with inaccurate sensors is not certainly more probable than a part of it once the gain of the cleat
