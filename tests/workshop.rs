@@ -61,8 +61,8 @@ axle on_a_post {
         text: text.into(),
     };
     let model = qcar_dsl::compile::check(source, &|_, _| Err("one file".into())).unwrap();
-    let inside = Some("in_damper".to_string());
-    let expected = ["tire", "damper"].map(|at| (at.to_string(), inside.clone()));
+    let expected = [("tire", "in_damper"), ("tire", "across_strut"), ("damper", "in_damper")];
+    let expected = expected.map(|(at, form)| (at.to_string(), Some(form.to_string())));
     assert_eq!(candidates(model, "coulomb_friction"), expected);
 }
 
