@@ -100,7 +100,6 @@ impl<'a> Bench<'a> {
         let (about, p) = (model.about(), values.as_slice());
         let mut constants = vec![0.0; about.constants];
         model.prepare(p, &mut constants);
-        let moved = |free: &Free| (0..p.len()).filter(|&k| values.leader(k) == free.parameter).collect();
         let size = |free: &Free| match p[free.parameter] {
             0.0 => (free.upper - free.lower).min(1.0),
             value => value.abs(),
@@ -109,7 +108,7 @@ impl<'a> Bench<'a> {
             model,
             p,
             constants,
-            moved: free.iter().map(moved).collect(),
+            moved: free.iter().map(|free| values.tied_to(free.parameter)).collect(),
             sizes: free.iter().map(size).collect(),
             u: vec![0.0; about.inputs.len()],
             nonzeros: vec![0.0; about.matrices.len()],

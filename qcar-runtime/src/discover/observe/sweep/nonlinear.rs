@@ -4,7 +4,7 @@ use nalgebra::Complex;
 
 use super::excitation;
 use crate::discover::observe::{Evidence, Free, Kind, PredictError, Prediction, Series, Stimulus, order_of, signal_of};
-use crate::model::{About, Model};
+use crate::model::Model;
 use crate::response::parameters::Values;
 use crate::response::periodic::{Cycle, Drive, Periodic};
 use crate::response::signal::output_of;
@@ -55,20 +55,10 @@ pub fn sweep(
         });
     }
     let outputs: Vec<usize> = readings.iter().map(|reading| reading.output).collect();
-    let groups = groups(about, values, free);
+    let groups: Vec<Vec<usize>> = free.iter().map(|free| values.tied_to(free.parameter)).collect();
     let cycles = Periodic::new(model, excitation, HARMONICS).walk(values.as_slice(), &drives, &outputs, &groups);
     let predict = |reading: &Reading| reading.prediction(&drives, &cycles, free.len());
     Ok(readings.iter().map(predict).collect())
-}
-
-/// For each free parameter, the positions of all parameters tied to it, itself included.
-fn groups(about: &About, values: &Values, free: &[Free]) -> Vec<Vec<usize>> {
-    let with = |free: &Free| {
-        (0..about.parameters.len())
-            .filter(|&k| values.leader(k) == free.parameter)
-            .collect()
-    };
-    free.iter().map(with).collect()
 }
 
 /// How a series is read from the periodic responses.
