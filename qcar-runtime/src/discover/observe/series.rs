@@ -67,6 +67,11 @@ impl Kind {
         }
     }
 
+    /// Number of real parts of a value.
+    pub fn parts(self) -> usize {
+        if self.complex() { 2 } else { 1 }
+    }
+
     /// Frequency (Hz) at which a motion sensor reads the value at `at`; `None` if it has none.
     pub fn frequency(self, at: f64) -> Option<f64> {
         match self {
@@ -104,6 +109,6 @@ impl Series {
 
     /// Number of real residuals.
     pub fn residuals(&self) -> usize {
-        self.value.len() * if self.kind.complex() { 2 } else { 1 }
+        self.value.len() * self.kind.parts()
     }
 }

@@ -103,7 +103,7 @@ fn tiles(evidence: &Evidence, residuals: &[Vec<f64>]) -> Vec<Tile> {
     let mut tiles = Vec::new();
     for (series, residuals) in evidence.series.iter().zip(residuals) {
         let mut sums: BTreeMap<i64, (f64, usize)> = BTreeMap::new();
-        let parts = if series.kind.complex() { 2 } else { 1 };
+        let parts = series.kind.parts();
         for (at, of_value) in series.at.iter().zip(residuals.chunks(parts)) {
             let sum = sums.entry(scale(series).place(*at).floor() as i64).or_default();
             sum.0 += of_value.iter().map(|residual| residual * residual).sum::<f64>();

@@ -10,7 +10,7 @@ use crate::campaign::Role;
 use crate::discover::answer::{Finding, Rival};
 use crate::discover::noise::AccuracyClass;
 use crate::discover::numbers::{Numbers, ONE_SIDED};
-use crate::discover::observe::{Evidence, Series};
+use crate::discover::observe::Evidence;
 use crate::discover::posterior::{Explanation, Refit};
 
 /// Rounds and evaluations of a fit to other evidence from a known optimum. A choice, ample so near an optimum.
@@ -262,8 +262,7 @@ pub fn is_missing(set: &Set, evidence: &Evidence) -> bool {
 /// True if the fitted residuals are significantly larger than noise. For a right model their mean square is 1 with a
 /// standard deviation of `sqrt(2/n)` for `n` values.
 pub fn leaves_more_than_noise(set: &Set, evidence: &Evidence) -> bool {
-    let parts = |series: &Series| series.at.len() * if series.kind.complex() { 2 } else { 1 };
-    let values: usize = evidence.of_role(Role::Fit).map(|(_, series)| parts(series)).sum();
+    let values: usize = evidence.of_role(Role::Fit).map(|(_, series)| series.residuals()).sum();
     let scatter = (2.0 / values.max(1) as f64).sqrt();
     let square = set.explanation.misfit.fit.powi(2);
     square.is_nan() || square > 1.0 + ONE_SIDED * scatter

@@ -17,7 +17,7 @@ pub struct Value {
 
 /// The values of a series; `first` is the row of its first residual.
 pub fn values(evidence: &Evidence, series: &Series, first: usize) -> Vec<Value> {
-    let parts = if series.kind.complex() { 2 } else { 1 };
+    let parts = series.kind.parts();
     let (places, signal) = (places(series, &evidence.numbers), signal(evidence, series));
     let of = |k: usize| Value {
         run: series.run,
