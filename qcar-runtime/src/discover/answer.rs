@@ -1,5 +1,6 @@
 //! Results of a search, and its progress messages.
 
+use super::observe::Evidence;
 use super::posterior::Explanation;
 
 /// Verdict of a search.
@@ -140,12 +141,8 @@ pub enum Update<'a> {
 /// Receives progress messages, from any thread.
 pub type Progress<'a> = &'a (dyn Fn(Update<'_>) + Sync);
 
-/// RMS of the normalised residual as text: of the held-out runs, or of the fitted runs if none is held out.
-pub(super) fn rms_text(of: &Explanation) -> String {
-    let rms = if of.misfit.held_out.is_finite() {
-        of.misfit.held_out
-    } else {
-        of.misfit.fit
-    };
+/// RMS of the normalised residual on the runs that judge the model, as text.
+pub(super) fn rms_text(of: &Explanation, evidence: &Evidence) -> String {
+    let rms = of.misfit.judged(evidence);
     format!("an RMS residual of {rms:.2} standard deviations")
 }

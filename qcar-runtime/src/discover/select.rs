@@ -115,7 +115,7 @@ fn is_more_probable(log_evidence: f64, than: &Set, evidence: &Evidence) -> bool 
 /// The search from a fitted base model. `known` is the answer for nearly the same data: the search may miss its minimum
 /// now, or find another. Also returns the set of the answer.
 fn search(base: Set, mut known: Option<Set>, evidence: &Evidence, progress: Progress<'_>) -> (Discovery, Set) {
-    let text = format!("the base model alone leaves {}", rms_text(&base.explanation));
+    let text = format!("the base model alone leaves {}", rms_text(&base.explanation, evidence));
     progress(Update::Interim(&text, &[], &base.explanation));
     let mut sets = vec![base];
     let mut law = FirstLaw::default();
@@ -134,7 +134,7 @@ fn search(base: Set, mut known: Option<Set>, evidence: &Evidence, progress: Prog
             let others = other_forms(&sets[place], &sets, evidence);
             sets.extend(others);
         }
-        report(&sets[best(&sets)], progress);
+        report(&sets[best(&sets)], evidence, progress);
     }
     // Remove effects that the evidence no longer supports beside those found later.
     while let Some(place) = unreduced(&sets) {
@@ -314,11 +314,12 @@ fn best(sets: &[Set]) -> usize {
     most_probable(sets, 0..sets.len()).unwrap_or(0)
 }
 
-fn report(set: &Set, progress: Progress<'_>) {
+fn report(set: &Set, evidence: &Evidence, progress: Progress<'_>) {
     let names = set.named().map(|own| format!("{} at {}", own.effect, own.at));
     let names: Vec<String> = names.collect();
     if !names.is_empty() {
-        let words = format!("with {} it leaves {}", names.join(" and "), rms_text(&set.explanation));
+        let left = rms_text(&set.explanation, evidence);
+        let words = format!("with {} it leaves {left}", names.join(" and "));
         progress(Update::Interim(&words, &set.findings(), &set.explanation));
     }
 }

@@ -92,6 +92,14 @@ impl Misfit {
             residuals,
         })
     }
+
+    /// RMS on the runs that judge the model: the held-out runs, or the fitted runs if none is held out.
+    pub fn judged(&self, evidence: &Evidence) -> f64 {
+        match evidence.of_role(Role::HeldOut).next() {
+            Some(_) => self.held_out,
+            None => self.fit,
+        }
+    }
 }
 
 /// Number of tiles in an octave.

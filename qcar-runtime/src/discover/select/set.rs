@@ -276,10 +276,12 @@ pub fn explained_share(before: &Set, after: &Set, evidence: &Evidence) -> f64 {
     (1.0 - left).max(-1.0)
 }
 
-/// Excess residual: the mean square of the normalised residual above that of noise, which is 1; at least 0. It is that
-/// of the held-out runs, or of the fitted runs if none is held out.
+/// Excess residual of the held-out runs, or of the fitted runs if none is held out: see [`above_noise`].
 pub fn excess(own: &Explanation, evidence: &Evidence) -> f64 {
-    let held_out = evidence.of_role(Role::HeldOut).next().is_some();
-    let rms = if held_out { own.misfit.held_out } else { own.misfit.fit };
+    above_noise(own.misfit.judged(evidence))
+}
+
+/// Mean square of a normalised residual, from its RMS, above that of noise, which is 1; at least 0.
+pub fn above_noise(rms: f64) -> f64 {
     (rms.powi(2) - 1.0).max(0.0)
 }
