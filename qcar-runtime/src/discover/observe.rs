@@ -39,6 +39,7 @@ mod predict;
 // Recorded inputs without their noise.
 mod input_noise;
 
+pub(super) use cleat::envelope;
 pub use dataset::Evidence;
 pub use input_noise::Quieter;
 pub use predict::{predict, predict_by_initial_states, predict_sides, replayed};

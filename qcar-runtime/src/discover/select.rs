@@ -46,7 +46,7 @@ use fidelity::Fidelity;
 use first_law::FirstLaw;
 use held_out::supported_part;
 use probability::probabilities;
-use race::{MOST_REPETITIONS, may_gain_more};
+use race::{FINE_BUDGET, MOST_REPETITIONS, may_gain_more};
 use set::{Set, best_base, excess, explained_share, is_missing, keep_best, leaves_more_than_noise, most_probable};
 use verdict::conclude;
 
@@ -394,9 +394,6 @@ fn reductions(set: &Set, base: &Set, evidence: &Evidence, progress: Progress<'_>
         .collect()
 }
 
-/// Rounds and evaluations of a fit without an effect: those of the last round of a race.
-const WITHOUT: (usize, usize) = (2, 15);
-
 /// The set without one of its effects, by position; `None` if it cannot be assembled or fitted.
 fn without(left_out: usize, set: &Set, base: &Set, evidence: &Evidence) -> Option<Set> {
     let effects = set.assembly.effects();
@@ -406,12 +403,12 @@ fn without(left_out: usize, set: &Set, base: &Set, evidence: &Evidence) -> Optio
     let mut from = set.assembly.hypothesis().place(&set.explanation.refit);
     from.errors.truncate(base.assembly.hypothesis().sensor_errors());
     let steady = evidence.minus(&set.explanation.refit.unsteady).with_step_limit();
-    let mut refit = hypothesis.fit(&from, &steady, WITHOUT).ok()?;
+    let mut refit = hypothesis.fit(&from, &steady, FINE_BUDGET).ok()?;
     for _ in 0..MOST_REPETITIONS {
         if !may_gain_more(&refit) {
             break;
         }
-        refit = hypothesis.fit(&hypothesis.place(&refit), &steady, WITHOUT).ok()?;
+        refit = hypothesis.fit(&hypothesis.place(&refit), &steady, FINE_BUDGET).ok()?;
     }
     let explanation = finite_explanation(&hypothesis, refit, evidence)?;
     let share = set.log_prior * others.len() as f64 / effects.len() as f64;

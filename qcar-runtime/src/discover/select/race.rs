@@ -29,6 +29,9 @@ struct Round {
     starts: usize,
 }
 
+/// Searches and evaluations of each in a fit to all fitted runs. A choice that limits the time.
+pub const FINE_BUDGET: (usize, usize) = (2, 15);
+
 /// The rounds. Their numbers are choices: each has about twice the work for each candidate and fewer candidates.
 const ROUNDS: [Round; 4] = [
     Round {
@@ -55,7 +58,7 @@ const ROUNDS: [Round; 4] = [
     Round {
         evidence: |all| &all.fine,
         before: |all| &all.longer[1],
-        budget: (2, 15),
+        budget: FINE_BUDGET,
         kept: 3,
         starts: 1,
     },
