@@ -3,6 +3,7 @@
 use nalgebra::Complex;
 
 use super::excitation;
+use crate::discover::observe::run::line_at;
 use crate::discover::observe::{Evidence, Free, Kind, PredictError, Prediction, Series, Stimulus, order_of, signal_of};
 use crate::model::Model;
 use crate::response::parameters::Values;
@@ -50,6 +51,7 @@ pub fn sweep(
         readings.push(Reading {
             place,
             series,
+            lines: series.at.iter().map(|at| line_at(frequency, *at)).collect(),
             output,
             power,
         });
@@ -65,6 +67,8 @@ pub fn sweep(
 struct Reading<'a> {
     place: usize,
     series: &'a Series,
+    /// Positions of its values among the frequencies of the sweep.
+    lines: Vec<usize>,
     /// Position of the output.
     output: usize,
     /// Power of jω from the output to the sensor.
@@ -76,27 +80,25 @@ impl Reading<'_> {
         let Kind::Harmonic(harmonic) = self.series.kind else {
             unreachable!("a sweep has no other series")
         };
-        let at = |f: &f64| drives.iter().position(|drive| drive.frequency == *f).unwrap_or(0);
-        let places: Vec<usize> = self.series.at.iter().map(at).collect();
-        let scale = |place: usize| {
-            let drive = drives[place];
+        let scale = |line: usize| {
+            let drive = drives[line];
             let omega = std::f64::consts::TAU * drive.frequency * harmonic as f64;
             Complex::new(0.0, omega).powi(self.power) / drive.amplitude
         };
-        let value = |&place: &usize| cycles[place].output(self.output)[harmonic] * scale(place);
+        let value = |&line: &usize| cycles[line].output(self.output)[harmonic] * scale(line);
         let slope = |k: usize| {
-            let along = |&place: &usize| cycles[place].slope(k, self.output)[harmonic] * scale(place);
-            places.iter().map(along).collect()
+            let along = |&line: &usize| cycles[line].slope(k, self.output)[harmonic] * scale(line);
+            self.lines.iter().map(along).collect()
         };
-        let by_drive = |&place: &usize| {
-            let moved = cycles[place].louder(self.output)[harmonic] - cycles[place].output(self.output)[harmonic];
-            moved * scale(place)
+        let by_drive = |&line: &usize| {
+            let moved = cycles[line].louder(self.output)[harmonic] - cycles[line].output(self.output)[harmonic];
+            moved * scale(line)
         };
         Prediction {
             series: self.place,
-            value: places.iter().map(value).collect(),
+            value: self.lines.iter().map(value).collect(),
             by_drive: if free > 0 {
-                vec![places.iter().map(by_drive).collect()]
+                vec![self.lines.iter().map(by_drive).collect()]
             } else {
                 Vec::new()
             },
