@@ -33,8 +33,24 @@ pub struct Set {
     pub reduced: bool,
     /// Candidates that were dropped in the race that led to it.
     pub rivals: Vec<Rival>,
-    /// Its explanations with the sensors of other sets, by their log posteriors: see [`Self::with_sensors_of`].
-    pub with_sensors: Arc<Mutex<Vec<(f64, Explanation)>>>,
+    /// Its explanations with the sensors of other sets: see [`Self::with_sensors_of`].
+    with_sensors: Arc<Mutex<Vec<(Sensors, Explanation)>>>,
+}
+
+/// Estimated accuracy class and calibration errors of the sensors.
+#[derive(Clone, Debug, PartialEq)]
+struct Sensors {
+    accuracy: AccuracyClass,
+    errors: Vec<f64>,
+}
+
+impl Sensors {
+    fn of(refit: &Refit) -> Self {
+        Self {
+            accuracy: refit.nuisance.accuracy,
+            errors: refit.coefficients[..refit.nuisance.of_calibration()].to_vec(),
+        }
+    }
 }
 
 impl Set {
@@ -82,13 +98,16 @@ impl Set {
         if self.accuracy() <= other.accuracy() {
             return Cow::Borrowed(&self.explanation);
         }
-        let key = other.log_posterior();
+        let sensors = Sensors::of(&other.explanation.refit);
         let known = || self.with_sensors.lock().expect("no thread panics with the lock");
-        let there = known().iter().find(|(of, _)| *of == key).map(|(_, own)| own.clone());
+        let there = known()
+            .iter()
+            .find(|(of, _)| *of == sensors)
+            .map(|(_, own)| own.clone());
         let own = there.unwrap_or_else(|| {
             let refitted = self.refitted_with_sensors(&other.explanation.refit, evidence);
             let own = refitted.unwrap_or_else(|| self.explanation.clone());
-            known().push((key, own.clone()));
+            known().push((sensors, own.clone()));
             own
         });
         Cow::Owned(own)
