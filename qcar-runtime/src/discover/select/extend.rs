@@ -166,7 +166,7 @@ fn rival(candidate: &Candidate, behind: f64) -> Rival {
     Rival {
         effect: candidate.effect.clone(),
         at: candidate.at.clone(),
-        behind: -behind,
+        behind,
         early: true,
     }
 }

@@ -84,7 +84,7 @@ pub struct Finalist {
 pub struct Dropped {
     /// Its position among the candidates.
     pub candidate: usize,
-    /// Its log evidence minus that of the best, in its last round; zero or negative.
+    /// Log evidence of the best minus its own, in its last round; at least 0.
     pub behind: f64,
 }
 
@@ -278,7 +278,7 @@ fn best<'a>(
         } else if *count == 0 {
             dropped.push(Dropped {
                 candidate: runner.candidate,
-                behind: -behind,
+                behind,
             });
         }
     }
