@@ -52,7 +52,7 @@ use verdict::conclude;
 
 pub use multi_start::{Minimum, MultiStart, fit_from_starts};
 
-use super::answer::{Discovery, Learned, Progress, Update, Verdict, rms_text};
+use super::answer::{DetectionLimit, Discovery, Learned, Progress, Update, Verdict, rms_text};
 use super::candidate::Workshop;
 use super::numbers::{EVEN, GREATER_PART, MOST_EFFECTS, Numbers};
 use super::observe::{Evidence, PredictError, Quieter, Run, Stimulus};
@@ -148,31 +148,46 @@ fn search(base: Set, mut known: Option<Set>, evidence: &Evidence, progress: Prog
         let others = exchanges(&sets[place], &sets, evidence);
         sets.extend(others);
     }
-    let base = &sets[best_base(&sets)];
     let (mut discovery, found) = conclude(&sets, evidence);
-    if is_unexplained(&discovery, base, evidence) {
-        let first = law.for_base(&sets, evidence, progress);
+    compare_with_law(&mut discovery, found, &sets, &mut law, evidence, progress);
+    if discovery.verdict == Verdict::None {
+        discovery.detection_limits = limits(&sets[best_base(&sets)], evidence);
+    }
+    (discovery, sets.swap_remove(found))
+}
+
+/// Learns a law if the answer needs one, and replaces the findings by it if it is certainly more probable. `found` is
+/// the position of the set of the answer.
+fn compare_with_law(
+    discovery: &mut Discovery,
+    found: usize,
+    sets: &[Set],
+    law: &mut FirstLaw,
+    evidence: &Evidence,
+    progress: Progress<'_>,
+) {
+    let (base, found) = (&sets[best_base(sets)], &sets[found]);
+    if is_unexplained(discovery, base, evidence) {
+        let first = law.for_base(sets, evidence, progress);
         let learned = learn::learn(base, first, &sets[0], evidence, progress);
         let learned = learned.map(|learned| learn::summary(base, learned, evidence));
         discovery.take(learned, &evidence.numbers);
-    } else if discovery.verdict != Verdict::None && is_doubtful(&sets[found], base, evidence) {
+    } else if discovery.verdict != Verdict::None && is_doubtful(found, base, evidence) {
         // Several effects together can imitate a law that is not in the catalogue.
-        let law = law.for_base(&sets, evidence, progress);
+        let law = law.for_base(sets, evidence, progress);
         let law = law.filter(|law| learn::is_supported(law, base, evidence));
-        let is_certain = |law: &Set| {
-            let probability = probabilities(&[&sets[found], law], evidence);
-            probability[1] > evidence.numbers.certain()
-        };
+        let is_certain = |law: &Set| probabilities(&[found, law], evidence)[1] > evidence.numbers.certain();
         let law = law.filter(is_certain);
-        let law = law.filter(|law| contradicts(law, &sets[found], evidence));
+        let law = law.filter(|law| contradicts(law, found, evidence));
         discovery.prefer(law.map(|law| learn::summary(base, law, evidence)));
     }
-    if discovery.verdict == Verdict::None {
-        let refit = &base.explanation.refit;
-        let steady = evidence.minus(&refit.unsteady).with_step_limit();
-        discovery.detection_limits = detection_limits(&base.assembly, refit, &Fidelity::of(&steady).fine);
-    }
-    (discovery, sets.swap_remove(found))
+}
+
+/// Detection limits of the effects that a base model lacks, from the fitted runs.
+fn limits(base: &Set, evidence: &Evidence) -> Vec<DetectionLimit> {
+    let refit = &base.explanation.refit;
+    let steady = evidence.minus(&refit.unsteady).with_step_limit();
+    detection_limits(&base.assembly, refit, &Fidelity::of(&steady).fine)
 }
 
 /// True if all runs are records and the model leaves no more than noise in the fitted and in the held-out ones. The
