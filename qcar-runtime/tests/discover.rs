@@ -180,7 +180,7 @@ fn a_gain_beyond_calibration_is_told_when_suspected() {
     let suspected = Nuisance::of(&wrong).with_suspect("wheel", Some(Axis::Z), Form::Gain, 1.0);
     let suspected = suspected.expect("the wheel has a sensor");
     let refit = refit_with(&model, &base.values, &base.free, &wrong, suspected, 60).expect("sensors are there");
-    let gain = refit.coefficients[refit.nuisance.len() - 1].exp();
+    let gain = refit.coefficients[refit.nuisance.count() - 1].exp();
     assert!((gain - 1.04).abs() < 0.015, "{gain}");
     assert!(refit.chi2 < base.chi2 - 10.0, "{} {}", refit.chi2, base.chi2);
 }

@@ -54,7 +54,7 @@ pub use multi_start::{Minimum, MultiStart, fit_from_starts};
 
 use super::answer::{DetectionLimit, Discovery, Learned, Progress, Update, Verdict, rms_text};
 use super::candidate::Workshop;
-use super::numbers::{EVEN, GREATER_PART, MOST_EFFECTS, Numbers};
+use super::numbers::{DOUBTFUL_BELOW, GREATER_PART, MOST_EFFECTS, Numbers};
 use super::observe::{Evidence, PredictError, Quieter, Run, Stimulus};
 use super::posterior::{Explanation, Refit, Setting};
 use crate::campaign::Role;
@@ -209,7 +209,7 @@ fn needs_no_further_effect(sets: &[Set], set: usize, evidence: &Evidence) -> boo
 /// True if something is probably missing that no effect of the catalogue explains: the verdict is `Unknown`, or it is
 /// `None` with a probability below one half or with fitted residuals above noise.
 fn is_unexplained(discovery: &Discovery, base: &Set, evidence: &Evidence) -> bool {
-    let is_improbable = |probability: f64| probability < EVEN;
+    let is_improbable = |probability: f64| probability < DOUBTFUL_BELOW;
     match discovery.verdict {
         Verdict::Unknown => true,
         Verdict::None => discovery.probability.is_some_and(is_improbable) || leaves_more_than_noise(base, evidence),

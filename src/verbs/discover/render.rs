@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use qcar_runtime::discover::answer::{DetectionLimit, Finding, Probable, Rival, Verdict};
-use qcar_runtime::discover::numbers::EVEN;
+use qcar_runtime::discover::numbers::DOUBTFUL_BELOW;
 use qcar_runtime::discover::observe::Kind;
 use qcar_runtime::discover::posterior::{Explanation, Tile};
 use qcar_runtime::mean::rms_or_nan;
@@ -424,7 +424,9 @@ fn nothing_found(of: &Answer) -> String {
 
 /// True if the probability of the answer is below one half.
 fn is_doubtful(of: &Answer) -> bool {
-    of.discovery.probability.is_some_and(|probability| probability < EVEN)
+    of.discovery
+        .probability
+        .is_some_and(|probability| probability < DOUBTFUL_BELOW)
 }
 
 /// Word before the name of a finding: `either` or `or` for an alternative.

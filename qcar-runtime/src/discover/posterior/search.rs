@@ -47,7 +47,7 @@ impl Posterior<'_> {
 
     /// Bounds of the parameters, the sensor errors and the side factors.
     pub fn bounds(&self) -> Bounds {
-        let (sensors, sides) = self.sigmas.split_at(self.nuisance.len());
+        let (sensors, sides) = self.sigmas.split_at(self.nuisance.count());
         let sides = sides.iter().map(|sigma| SIDE_BOUND * sigma);
         let most = if self.discrepancy.is_some() {
             ERROR_BOUND

@@ -132,7 +132,8 @@ impl Set {
         let percent = |class: AccuracyClass| format!("{:.1} %", 100.0 * class.gain());
         self.has_inaccurate_sensors().then(|| {
             format!(
-                "the gains of the sensors seem to change by {} over the band, where {} is usual; the answer allows for that",
+                "the gains of the sensors seem to change by {} over the band, where {} is usual; the answer allows for \
+                 that",
                 percent(class),
                 percent(AccuracyClass::default())
             )

@@ -187,7 +187,8 @@ fn too_short(history: &History, recording: &Recording, reach: usize) -> InputErr
     let (expected, remedy) = match recording.band {
         Some((low, high)) => (
             format!(
-                "one longer than the {} s that the filter of `band = [{low}, {high}]` takes, by 20 samples of that band",
+                "one longer than the {} s that the filter of `band = [{low}, {high}]` takes, by 20 samples of that \
+                 band",
                 seconds(2 * reach)
             ),
             "widen the band towards zero, leave it out, or export a longer record",
