@@ -112,3 +112,14 @@ impl Series {
         self.value.len() * self.kind.parts()
     }
 }
+
+/// Position of the abscissa nearest to `wanted`. They increase, and there is at least one.
+pub fn nearest(at: &[f64], wanted: f64) -> usize {
+    let after = at.partition_point(|at| *at < wanted).min(at.len() - 1);
+    let before = after.saturating_sub(1);
+    if (at[before] - wanted).abs() < (at[after] - wanted).abs() {
+        before
+    } else {
+        after
+    }
+}

@@ -1,7 +1,7 @@
 //! Values that a discrepancy correlates, with their position and signal.
 
 use crate::discover::numbers::Numbers;
-use crate::discover::observe::{Evidence, Kind, Series, envelope};
+use crate::discover::observe::{Evidence, Kind, Series, envelope, nearest};
 use crate::mean::rms;
 
 /// A value of a group.
@@ -77,16 +77,6 @@ fn signal(evidence: &Evidence, series: &Series) -> Vec<f64> {
         },
         Kind::Time | Kind::Travel | Kind::Width | Kind::Speed => vec![rms(&own); own.len()],
         Kind::Passage => (0..own.len()).map(|k| envelope(&own, k)).collect(),
-    }
-}
-
-fn nearest(at: &[f64], wanted: f64) -> usize {
-    let after = at.partition_point(|at| *at < wanted).min(at.len() - 1);
-    let before = after.saturating_sub(1);
-    if (at[before] - wanted).abs() < (at[after] - wanted).abs() {
-        before
-    } else {
-        after
     }
 }
 
