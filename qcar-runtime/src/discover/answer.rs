@@ -37,17 +37,16 @@ pub struct Finding {
     pub rivals: Vec<Rival>,
 }
 
-/// An alternative explanation.
+/// An alternative explanation: a candidate that was dropped before the last round of fits.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Rival {
     /// Name of the effect.
     pub effect: String,
     /// Link, mass or sensor location.
     pub at: String,
-    /// Log evidence of the best candidate minus its own; positive if it is worse.
+    /// Log evidence of the best candidate minus its own, from its last fit, which had not converged and may be to a
+    /// part of the data; at least 0.
     pub behind: f64,
-    /// True if it was dropped before the last round: `behind` then comes from a fit to a part of the data.
-    pub early: bool,
 }
 
 /// An effect that may be missing, with its probability.

@@ -37,17 +37,12 @@ function strengthTable(title, { parameters, stderr, units }) {
 function rivalTable(rivals) {
   if (!rivals.length) return null;
   return table(
-    'Rivals and their probability relative to the answer',
+    'Rivals and their probability relative to the answer, before their fits had converged',
     [
       ['effect', 'text sentence'],
       ['probability', 'text sentence'],
-      ['judged', 'text sentence'],
     ],
-    rivals.map((rival) => [
-      `${words(rival.effect)} at ${words(rival.at)}`,
-      odds(rival.behind),
-      rival.early ? 'before its fit had converged' : 'fit converged',
-    ]),
+    rivals.map((rival) => [`${words(rival.effect)} at ${words(rival.at)}`, odds(rival.behind)]),
   );
 }
 

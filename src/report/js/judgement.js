@@ -98,8 +98,7 @@ function chance(probability) {
 function nextBest(chosen) {
   const rival = chosen && chosen.rivals[0];
   if (!rival) return '';
-  const settled = rival.early ? ', compared before its fit had converged' : '';
-  return ` The next best explanation, ${words(rival.effect)} at ${words(rival.at)}, is ${odds(rival.behind)}${settled}.`;
+  return ` The next best explanation, ${words(rival.effect)} at ${words(rival.at)}, is ${odds(rival.behind)}, compared before its fit had converged.`;
 }
 
 // The probability relative to the answer of a rival whose log evidence is lower by `behind`.

@@ -167,7 +167,6 @@ fn rival(candidate: &Candidate, behind: f64) -> Rival {
         effect: candidate.effect.clone(),
         at: candidate.at.clone(),
         behind,
-        early: true,
     }
 }
 
