@@ -10,6 +10,7 @@ use qcar_runtime::discover::{Free, Misfit, Place, Refit, Sweeps, refit, stiffnes
 use qcar_runtime::model::{Clock, Model};
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::response::ratio::ratio;
+use qcar_runtime::roles::OnRig;
 use qcar_runtime::transmissibility::{Point, logarithmic};
 
 use super::support::random::Random;
@@ -364,4 +365,35 @@ fn runs_with_other_bands_have_a_common_kappa() {
         spring.common,
         spring.ceiling
     );
+}
+
+/// With a Jacobian that is too small by far, each step of Newton's method more than doubles the error.
+#[test]
+fn a_rig_whose_states_cannot_be_found_has_no_force() {
+    let on = OnRig {
+        wheel: "wheel".into(),
+        body: "body".into(),
+    };
+    let mut evidence = evidence(&Strut::new(PLAIN), &TRUTH, |_, _| 1.0);
+    evidence.runs.truncate(1);
+    evidence.runs[0].stimulus = Stimulus::Travel {
+        on,
+        axis: Axis::Z,
+        ends: [-0.05, 0.05],
+    };
+    evidence.series.truncate(1);
+    evidence.series[0].kind = Kind::Travel;
+    evidence.series[0].at = vec![-0.02, 0.0, 0.02];
+    let forces = |jacobian_factor: f64| {
+        let mut model = Strut::new(PLAIN);
+        model.about.linear = false;
+        model.jacobian_factor = jacobian_factor;
+        let predictions = predict(&model, &resolve(&model, &TRUTH), &[], &evidence, Role::Fit);
+        predictions.expect("the model has both masses")[0].value.clone()
+    };
+    let spring = TRUTH[3];
+    for (force, travel) in forces(1.0).iter().zip([-0.02, 0.0, 0.02]) {
+        assert!((force.re - spring * travel).abs() < 1.0, "{force} N at {travel} m");
+    }
+    assert!(forces(0.3).iter().all(|force| force.is_nan()));
 }

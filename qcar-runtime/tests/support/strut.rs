@@ -21,6 +21,10 @@ pub struct Parts {
 pub struct Strut {
     pub about: About,
     parts: Parts,
+    /// Factor on its Jacobian; 1 is right.
+    pub jacobian_factor: f64,
+    /// A parameter, and the value whose two sides act alike; `None` if there is no such parameter.
+    pub mirrored: Option<(usize, f64)>,
 }
 
 const BASE: [(&str, &str); 9] = [
@@ -43,6 +47,8 @@ impl Strut {
         Self {
             about: about(parts),
             parts,
+            jacobian_factor: 1.0,
+            mirrored: None,
         }
     }
 
@@ -57,6 +63,10 @@ impl Strut {
     /// `dx` for parameters, states and inputs (pad height, pad velocity, wheel force).
     fn rates(&self, p: &[f64], x: &[f64], u: &[f64]) -> Vec<f64> {
         let n = self.masses();
+        let mut p = p.to_vec();
+        if let Some((k, middle)) = self.mirrored {
+            p[k] = middle + (p[k] - middle).abs();
+        }
         let (z, v) = x.split_at(n);
         let (body, wheel, tm, pwt) = (0, 1, 2, 3);
         let extra = &p[BASE.len()..];
@@ -193,7 +203,11 @@ impl Model for Strut {
     }
 
     fn matrices(&self, p: &[f64], x: &[f64], u: &[f64], nonzeros: &mut [f64]) {
-        nonzeros.copy_from_slice(&self.dense(p, x, u));
+        let right = self.dense(p, x, u).into_iter();
+        nonzeros
+            .iter_mut()
+            .zip(right)
+            .for_each(|(own, right)| *own = self.jacobian_factor * right);
     }
 
     fn sensitivities(&self, p: &[f64], x: &[f64], u: &[f64], nonzeros: &mut [f64]) {
