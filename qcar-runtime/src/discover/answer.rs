@@ -31,8 +31,8 @@ pub struct Finding {
     /// Increase of the log evidence by all findings together.
     pub evidence: f64,
     /// Share of the excess residual that the findings explain, on the held-out runs, or on the fitted runs if none is
-    /// held out.
-    pub explained: f64,
+    /// held out. `None` if the base model leaves no excess there, so that there is nothing to explain.
+    pub explained: Option<f64>,
     /// Next best explanations, best first.
     pub rivals: Vec<Rival>,
 }
@@ -62,7 +62,7 @@ pub struct Probable {
     /// do not support, and limiting cases of simpler sets, do not count.
     pub probability: f64,
     /// Share of the excess residual that the best of the smallest sets with it explains, as in [`Finding::explained`].
-    pub explained: f64,
+    pub explained: Option<f64>,
     /// Increase of the log evidence by that set.
     pub log_evidence: f64,
 }
@@ -97,7 +97,7 @@ pub struct Learned {
     /// The laws with their places and coefficients.
     pub laws: Vec<Finding>,
     /// Share of the excess residual that they explain, as in [`Finding::explained`].
-    pub explained: f64,
+    pub explained: Option<f64>,
     /// Duration of the longest run, s; a law over time is not determined beyond it.
     pub longest: f64,
     /// Explanation with the laws.

@@ -54,7 +54,7 @@ pub use multi_start::{Minimum, MultiStart, fit_from_starts};
 
 use super::answer::{DetectionLimit, Discovery, Learned, Progress, Update, Verdict, rms_text};
 use super::candidate::Workshop;
-use super::numbers::{DOUBTFUL_BELOW, GREATER_PART, MOST_EFFECTS, Numbers};
+use super::numbers::{DOUBTFUL_BELOW, GREATER_PART, MOST_EFFECTS};
 use super::observe::{Evidence, PredictError, Quieter, Run, Stimulus};
 use super::posterior::{Explanation, Refit, Setting};
 use crate::campaign::Role;
@@ -170,8 +170,10 @@ fn compare_with_law(
     if is_unexplained(discovery, base, evidence) {
         let first = law.for_base(sets, evidence, progress);
         let learned = learn::learn(base, first, &sets[0], evidence, progress);
+        let explains = |law: &Set| explained_share(base, law, evidence) >= evidence.numbers.explained();
+        let is_explained = learned.as_ref().is_some_and(explains);
         let learned = learned.map(|learned| learn::summary(base, learned, evidence));
-        discovery.take(learned, &evidence.numbers);
+        discovery.take(learned, is_explained);
     } else if discovery.verdict != Verdict::None && is_doubtful(found, base, evidence) {
         // Several effects together can imitate a law that is not in the catalogue.
         let law = law.for_base(sets, evidence, progress);
@@ -218,10 +220,9 @@ fn is_unexplained(discovery: &Discovery, base: &Set, evidence: &Evidence) -> boo
 }
 
 impl Discovery {
-    /// Stores a learned law if the verdict is `Unknown`. A law that explains enough of the excess residual turns the
-    /// verdict `None` into `Unknown`: something is missing, however small.
-    fn take(&mut self, learned: Option<Learned>, numbers: &Numbers) {
-        let is_explained = learned.as_ref().is_some_and(|own| own.explained >= numbers.explained());
+    /// Stores a learned law if the verdict is `Unknown`. A law by which enough of the excess residual `is_explained`
+    /// turns the verdict `None` into `Unknown`: something is missing, however small.
+    fn take(&mut self, learned: Option<Learned>, is_explained: bool) {
         if is_explained && self.verdict == Verdict::None {
             self.verdict = Verdict::Unknown;
             self.probability = None;

@@ -81,7 +81,8 @@ function unneeded(gap) {
 function learnedLaw({ learned }) {
   if (!learned) return '';
   const laws = learned.laws.map(placed).join(' and ');
-  return ` Learned from the data, without a physical cause: ${laws}, which would explain ${percent(learned.explained, 3)} of it.`;
+  const share = learned.explained === null ? '' : `, which would explain ${percent(learned.explained, 3)} of it`;
+  return ` Learned from the data, without a physical cause: ${laws}${share}.`;
 }
 
 function likelihood({ probability }) {

@@ -86,8 +86,8 @@ struct Limit<'a> {
 struct Evidence {
     /// Increase of the log evidence by all findings.
     log_evidence: f64,
-    /// Share of the excess residual that the findings explain.
-    gap_closed: f64,
+    /// Share of the excess residual that the findings explain; `null` if there is none.
+    gap_closed: Option<f64>,
     /// Share of the sweeps' residual that is explained, relative to the largest share that any effect at this place
     /// could explain; `null` if there are several findings.
     of_ceiling: Option<f64>,
@@ -367,7 +367,7 @@ fn candidates(all: &[Probable]) -> String {
             own.effect.clone(),
             own.at.clone(),
             format!("{:.3}", own.probability),
-            number(100.0 * own.explained, 3),
+            or_dash(own.explained.map(|share| 100.0 * share), 3),
             number(own.log_evidence, 4),
         ]);
     }

@@ -160,7 +160,7 @@ impl Set {
         if self.names().is_empty() { 1.0 } else { numbers.further }
     }
 
-    /// Findings for all its effects, with `evidence` and `explained` left at 0.
+    /// Findings for all its effects, not compared with the base model.
     pub fn findings(&self) -> Vec<Finding> {
         let effects = self.assembly.effects().iter();
         let finding = |own: &Placed| Finding {
@@ -169,7 +169,7 @@ impl Set {
             form: own.form.clone(),
             parameters: own.unknowns.parameters(&self.explanation),
             evidence: 0.0,
-            explained: 0.0,
+            explained: None,
             rivals: self.rivals.clone(),
         };
         effects.map(finding).collect()
@@ -289,11 +289,18 @@ pub fn leaves_more_than_noise(set: &Set, evidence: &Evidence) -> bool {
 }
 
 /// Share of the [`excess`] residual of `before` that `after` explains with the same sensor errors. It is negative, and
-/// at least -1, if `after` leaves more; it is 1 if neither leaves any.
+/// at least -1, if `after` leaves more. For a decision it is 1 if neither leaves any, since nothing then speaks against
+/// `after`; an answer states [`stated_share`].
 pub fn explained_share(before: &Set, after: &Set, evidence: &Evidence) -> f64 {
     let before = before.with_sensors_of(after, evidence);
     let left = excess(&after.explanation, evidence) / excess(&before, evidence).max(f64::MIN_POSITIVE);
     (1.0 - left).max(-1.0)
+}
+
+/// The same share as an answer states it; `None` if `before` leaves no excess, so that there is nothing to explain.
+pub fn stated_share(before: &Set, after: &Set, evidence: &Evidence) -> Option<f64> {
+    let is_something = excess(&before.with_sensors_of(after, evidence), evidence) > 0.0;
+    is_something.then(|| explained_share(before, after, evidence))
 }
 
 /// Excess residual of the held-out runs, or of the fitted runs if none is held out: see [`above_noise`].
