@@ -308,7 +308,22 @@ pub fn excess(own: &Explanation, evidence: &Evidence) -> f64 {
     above_noise(own.misfit.judged(evidence))
 }
 
-/// Mean square of a normalised residual, from its RMS, above that of noise, which is 1; at least 0.
+/// Mean square of a normalised residual, from its RMS, above that of noise, which is 1; at least 0. It is infinite for
+/// NaN: a model that cannot predict the runs explains nothing.
 pub fn above_noise(rms: f64) -> f64 {
-    (rms.powi(2) - 1.0).max(0.0)
+    if rms.is_nan() {
+        f64::INFINITY
+    } else {
+        (rms.powi(2) - 1.0).max(0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::above_noise;
+
+    #[test]
+    fn a_model_that_cannot_predict_the_runs_explains_nothing() {
+        assert_eq!([2.0, 0.5, f64::NAN].map(above_noise), [3.0, 0.0, f64::INFINITY]);
+    }
 }
