@@ -6,17 +6,15 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use nalgebra::Complex;
 use qcar::catalogue::compiled;
 use qcar::effects;
 use qcar::workshop::Bench;
-use qcar_runtime::campaign::{Axis, Campaign, Quantity, Role};
+use qcar_runtime::campaign::{Campaign, Role};
 use qcar_runtime::discover::candidate::Workshop;
-use qcar_runtime::discover::observe::{Kind, Run, Series, Stimulus, predict};
+use qcar_runtime::discover::observe::{Kind, predict};
 use qcar_runtime::discover::{Evidence, Free};
 use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;
-use qcar_runtime::transmissibility::Point;
 
 const FRICTION: f64 = 140.0;
 const PRESLIDING: f64 = 1e6;
@@ -300,56 +298,4 @@ fn slopes_are_what_a_changed_parameter_does() {
         let worst = worst_slope(with.model(), given, &evidence);
         assert!(worst.0 < 1e-6, "{effect}: {worst:?}");
     }
-}
-
-/// A spring that relaxes with a time constant of many cycles: the force is that of the closed form once the transient has
-/// decayed, and none where it does not.
-#[test]
-fn a_dynamometer_waits_until_the_force_repeats() {
-    let (amplitude, added) = (0.02, 5e4);
-    let axle = bench("axle_c");
-    let with = axle.with("bushing_relaxation", "wheel_bushing_x", None).unwrap();
-    let link = "wheel_bushing_x".to_string();
-    let axis = Axis::X;
-    let run = Run {
-        name: "dynamometer".into(),
-        role: Role::Fit,
-        level: 1.0,
-        stimulus: Stimulus::Dynamometer { link, axis, amplitude },
-    };
-    let series = Series {
-        run: 0,
-        sensor: Point::new("wheel_bushing_x_on_dynamometer", axis, Quantity::Force),
-        kind: Kind::Speed,
-        at: vec![1.0],
-        value: vec![Complex::ZERO],
-        sigma: vec![1.0],
-        noise: vec![1.0],
-        least_discrepancy: 0.0,
-    };
-    let evidence = Evidence {
-        runs: vec![run],
-        series: vec![series],
-        two_sided: false,
-        notices: Vec::new(),
-        numbers: Default::default(),
-    };
-    let force = |corner: f64| {
-        let given = [
-            ("k_maxwell", added),
-            ("relaxation_frequency", corner),
-            ("c_wheel_x", 100.0),
-        ];
-        let values = values(with.model(), &given);
-        predict(with.model(), &values, &[], &evidence, Role::Fit).unwrap()[0].value[0].re
-    };
-    // Frequency of the motion over that of the relaxation.
-    let ratio = 1.0 / amplitude / (std::f64::consts::TAU * 0.2);
-    let expected = 100.0 + added * amplitude * ratio / (1.0 + ratio * ratio);
-    assert!(
-        (force(0.2) - expected).abs() < 0.1,
-        "{} N, not {expected} N",
-        force(0.2)
-    );
-    assert!(force(1e-3).is_nan());
 }

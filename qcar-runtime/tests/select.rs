@@ -9,7 +9,7 @@ use qcar_runtime::discover::candidate::{Added, Candidate, Change, ParameterRole,
 use qcar_runtime::discover::noise::Form;
 use qcar_runtime::discover::observe::{Kind, Series, signal_of};
 use qcar_runtime::discover::posterior::{Given, Setting};
-use qcar_runtime::discover::select::{discover, fit_from_starts};
+use qcar_runtime::discover::select::discover;
 use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::response::ratio::ratio;
@@ -149,10 +149,7 @@ fn delayed() -> Candidate {
 
 /// Sweeps of the axle with a mass on its body, whose body's sensor is late (s), at these levels.
 fn evidence(late: f64, levels: &[(f64, Role)]) -> Evidence {
-    evidence_of(&Strut::new(WITH_MASS), late, levels)
-}
-
-fn evidence_of(model: &Strut, late: f64, levels: &[(f64, Role)]) -> Evidence {
+    let model = Strut::new(WITH_MASS);
     let about = model.about();
     let named = about.parameters.iter().map(|own| own.name.to_string());
     let values = Values::resolve(about, &named.zip(TRUTH).collect(), &Default::default()).expect("all are given");
@@ -163,7 +160,7 @@ fn evidence_of(model: &Strut, late: f64, levels: &[(f64, Role)]) -> Evidence {
         runs.push(swept::run(run, level, role, &frequency));
         for location in ["wheel", "body"] {
             let [numerator, denominator] = [location, "pad"].map(|own| signal_of(about, &point(own)));
-            let exact = ratio(model, &values, 0, &numerator, &denominator, &frequency).expect("it has the sensors");
+            let exact = ratio(&model, &values, 0, &numerator, &denominator, &frequency).expect("it has the sensors");
             let delay = if location == "body" { late } else { 0.0 };
             let value = exact.value.iter().zip(&frequency).map(|(h, &f)| {
                 let noise = Complex::new(random.normal(), random.normal()) * NOISE / std::f64::consts::SQRT_2;
@@ -310,46 +307,4 @@ fn a_law_takes_the_place_of_a_name_that_no_run_confirms() {
     let unknown = answer_of(bench(vec![law]), &evidence);
     assert_eq!(unknown.verdict, Verdict::Unknown);
     assert_eq!(unknown.learned.expect("it explains more").laws[0].effect, "law");
-}
-
-/// Position of the spring's stiffness, 25 N/mm in truth.
-const SPRING: usize = 3;
-
-/// The stiffness acts alike on both sides of 20 N/mm. Both minima are fitted to the same lines, so they are mirror images
-/// far within the standard error.
-#[test]
-fn minima_that_are_equally_probable_are_both_told() {
-    let mut model = Strut::new(PLAIN);
-    model.mirrored = Some((SPRING, 20e3));
-    let given = model.about().parameters.iter().zip(TRUTH).enumerate();
-    let given = given.map(|(k, (own, truth))| Given {
-        name: own.name.to_string(),
-        value: if k == SPRING { 19e3 } else { truth },
-        range: match k {
-            0 | 2 => None,
-            SPRING => Some((10e3, 35e3)),
-            _ => Some((0.8 * truth, 1.2 * truth)),
-        },
-    });
-    let setting = Setting {
-        given: given.collect(),
-        vehicle: Default::default(),
-    };
-    let bench = Bench {
-        model,
-        masses: Vec::new(),
-        laws: Vec::new(),
-        delays: false,
-    };
-    let evidence = evidence_of(&Strut::new(PLAIN), 0.0, &LEVELS);
-    let found = fit_from_starts(Box::new(bench), &setting, &evidence, 12, &|_| ()).expect("the model has the sensors");
-    let (named, refit) = (&found.explanation.named, &found.explanation.refit);
-    let [other] = &found.others[..] else {
-        panic!("{} minima beside {named:?}", found.others.len())
-    };
-    assert!(other.log_odds.abs() < 1.0, "{}", other.log_odds);
-    let place = refit.free.iter().position(|own| own.parameter == SPRING);
-    let error = refit.stderr()[place.expect("it is free")];
-    let both = named[SPRING].1 + other.named["k_wheel_z"];
-    assert!((both - 40e3).abs() < 0.3 * error, "{both} ± {error} N/m");
 }

@@ -23,8 +23,6 @@ pub struct Strut {
     parts: Parts,
     /// Factor on its Jacobian; 1 is right.
     pub jacobian_factor: f64,
-    /// A parameter, and the value whose two sides act alike; `None` if there is no such parameter.
-    pub mirrored: Option<(usize, f64)>,
 }
 
 const BASE: [(&str, &str); 9] = [
@@ -48,7 +46,6 @@ impl Strut {
             about: about(parts),
             parts,
             jacobian_factor: 1.0,
-            mirrored: None,
         }
     }
 
@@ -63,10 +60,6 @@ impl Strut {
     /// `dx` for parameters, states and inputs (pad height, pad velocity, wheel force).
     fn rates(&self, p: &[f64], x: &[f64], u: &[f64]) -> Vec<f64> {
         let n = self.masses();
-        let mut p = p.to_vec();
-        if let Some((k, middle)) = self.mirrored {
-            p[k] = middle + (p[k] - middle).abs();
-        }
         let (z, v) = x.split_at(n);
         let (body, wheel, tm, pwt) = (0, 1, 2, 3);
         let extra = &p[BASE.len()..];
