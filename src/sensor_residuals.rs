@@ -57,7 +57,7 @@ pub(crate) fn left(evidence: &Evidence, [before, after]: [&Explanation; 2]) -> V
             .of_role(role)
             .filter(|(_, series)| series.sensor == *sensor && series.kind == kind);
         for (place, series) in own {
-            let parts = if kind.complex() { 2 } else { 1 };
+            let parts = kind.parts();
             let residuals = of.misfit.residuals[place].chunks(parts).zip(&series.sigma);
             let scale = 1.0 / parts as f64;
             missed += residuals

@@ -10,6 +10,7 @@ use qcar_runtime::discover::{Free, Misfit, Place, Refit, Sweeps, refit, stiffnes
 use qcar_runtime::model::{Clock, Model};
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::response::ratio::ratio;
+use qcar_runtime::roles::OnRig;
 use qcar_runtime::transmissibility::{Point, logarithmic};
 
 use super::support::random::Random;
@@ -180,7 +181,7 @@ fn a_gain_beyond_calibration_is_told_when_suspected() {
     let suspected = Nuisance::of(&wrong).with_suspect("wheel", Some(Axis::Z), Form::Gain, 1.0);
     let suspected = suspected.expect("the wheel has a sensor");
     let refit = refit_with(&model, &base.values, &base.free, &wrong, suspected, 60).expect("sensors are there");
-    let gain = refit.coefficients[refit.nuisance.len() - 1].exp();
+    let gain = refit.coefficients[refit.nuisance.count() - 1].exp();
     assert!((gain - 1.04).abs() < 0.015, "{gain}");
     assert!(refit.chi2 < base.chi2 - 10.0, "{} {}", refit.chi2, base.chi2);
 }
@@ -241,7 +242,8 @@ fn a_missing_mass_leaves_a_gap_around_its_mode() {
     );
 }
 
-/// Laws in closed form, each at two levels with some noise of one percent.
+/// Laws in closed form, each at two levels with some noise of one percent. The second run may begin at a higher
+/// frequency.
 #[test]
 fn laws_are_told_by_their_shape() {
     type Law = fn(Complex<f64>, f64) -> Complex<f64>;
@@ -260,10 +262,11 @@ fn laws_are_told_by_their_shape() {
         (|_, level| Complex::I * 400.0 / level, Shape::FrictionLike),
         (|s, level| 1e4 * level * s, Shape::Other),
     ];
-    for (k, (law, expected)) in laws.into_iter().enumerate() {
+    let cases = laws.iter().flat_map(|law| [0.6, 6.0].map(|first| (law, first)));
+    for ((law, expected), first) in cases {
         let mut random = Random(3);
-        let mut run = |level: f64| {
-            let frequency = logarithmic(0.6, 28.0, 60);
+        let mut run = |level: f64, first: f64| {
+            let frequency = logarithmic(first, 28.0, 60);
             let at = |f: &f64| {
                 let exact = law(Complex::I * std::f64::consts::TAU * f, level);
                 exact * (1.0 + 0.01 * Complex::new(random.normal(), random.normal()))
@@ -281,9 +284,9 @@ fn laws_are_told_by_their_shape() {
             place: Place::Parameter(0),
             ceiling: 1.0,
             common: 1.0,
-            runs: vec![run(0.025), run(0.1)],
+            runs: vec![run(0.025, 0.6), run(0.1, first)],
         };
-        assert_eq!(shape(&stiffness), expected, "law {k}");
+        assert_eq!(shape(&stiffness), *expected, "from {first} Hz");
     }
 }
 
@@ -336,4 +339,61 @@ fn kappa_is_the_stiffness_that_was_taken_away() {
         .find(|stiffness| stiffness.place == Place::Sensor(point("body")))
         .expect("it was measured");
     assert!(sensor.ceiling < 0.9, "{}", sensor.ceiling);
+}
+
+/// A damper that is too weak looks like a stiffness `jωc` in parallel to the spring. A second run that begins at a higher
+/// frequency shows the same.
+#[test]
+fn runs_with_other_bands_have_a_common_kappa() {
+    let model = Strut::new(PLAIN);
+    let mut real = TRUTH;
+    real[4] += 1000.0;
+    let mut evidence = evidence(&model, &real, |_, _| 1.0);
+    evidence.runs[1].role = Role::Fit;
+    for series in evidence.series.iter_mut().filter(|series| series.run == 1) {
+        series.at.drain(..20);
+        series.value.drain(..20);
+        series.sigma.drain(..20);
+    }
+    let base = refit(&model, &resolve(&model, &TRUTH), &[], &evidence.with_tolerance(0.05)).expect("sensors are there");
+    let map = stiffness_map(&model, &base, &evidence).expect("sensors are there");
+    let is_spring = |own: &&MissingStiffness| own.place == Place::Parameter(3);
+    let spring = map.iter().find(is_spring).expect("channels see the spring");
+    assert!(
+        spring.common > spring.ceiling - 0.01,
+        "{} of {}",
+        spring.common,
+        spring.ceiling
+    );
+}
+
+/// With a Jacobian that is too small by far, each step of Newton's method more than doubles the error.
+#[test]
+fn a_rig_whose_states_cannot_be_found_has_no_force() {
+    let on = OnRig {
+        wheel: "wheel".into(),
+        body: "body".into(),
+    };
+    let mut evidence = evidence(&Strut::new(PLAIN), &TRUTH, |_, _| 1.0);
+    evidence.runs.truncate(1);
+    evidence.runs[0].stimulus = Stimulus::Travel {
+        on,
+        axis: Axis::Z,
+        ends: [-0.05, 0.05],
+    };
+    evidence.series.truncate(1);
+    evidence.series[0].kind = Kind::Travel;
+    evidence.series[0].at = vec![-0.02, 0.0, 0.02];
+    let forces = |jacobian_factor: f64| {
+        let mut model = Strut::new(PLAIN);
+        model.about.linear = false;
+        model.jacobian_factor = jacobian_factor;
+        let predictions = predict(&model, &resolve(&model, &TRUTH), &[], &evidence, Role::Fit);
+        predictions.expect("the model has both masses")[0].value.clone()
+    };
+    let spring = TRUTH[3];
+    for (force, travel) in forces(1.0).iter().zip([-0.02, 0.0, 0.02]) {
+        assert!((force.re - spring * travel).abs() < 1.0, "{force} N at {travel} m");
+    }
+    assert!(forces(0.3).iter().all(|force| force.is_nan()));
 }

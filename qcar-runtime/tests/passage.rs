@@ -225,7 +225,7 @@ fn a_location_that_is_late_against_the_others_is_told_from_a_late_clock() {
         misfit.fit,
         misfit.held_out
     );
-    let delay = refit.coefficients[refit.nuisance.len() - 1];
+    let delay = refit.coefficients[refit.nuisance.count() - 1];
     assert!((delay - 0.004).abs() < 1e-4, "{delay} s");
     assert_eq!(with_suspect("pad", None), None);
 }

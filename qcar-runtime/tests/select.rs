@@ -221,7 +221,7 @@ fn an_effect_whose_magnitude_stands_at_its_end_is_no_answer() {
         assert_eq!(unknown.verdict, Verdict::Unknown);
         let candidate = &unknown.candidates[0];
         assert!(
-            candidate.effect == "light" && candidate.explained > 0.5,
+            candidate.effect == "light" && candidate.explained > Some(0.5),
             "{candidate:?}"
         );
     }
@@ -242,7 +242,7 @@ fn an_effect_that_takes_the_place_of_a_parameter_is_no_answer() {
     assert_eq!(unknown.verdict, Verdict::Unknown);
     let candidate = &unknown.candidates[0];
     assert!(
-        candidate.effect == "stiff" && candidate.explained > 0.5,
+        candidate.effect == "stiff" && candidate.explained > Some(0.5),
         "{candidate:?}"
     );
 }
@@ -303,6 +303,7 @@ fn a_law_takes_the_place_of_a_name_that_no_run_confirms() {
     let named = answer_of(bench(Vec::new()), &evidence);
     assert_eq!(named.verdict, Verdict::Found);
     assert_eq!(named.findings[0].effect, "stiff");
+    assert_eq!(named.findings[0].explained, None);
     let unknown = answer_of(bench(vec![law]), &evidence);
     assert_eq!(unknown.verdict, Verdict::Unknown);
     assert_eq!(unknown.learned.expect("it explains more").laws[0].effect, "law");

@@ -51,7 +51,7 @@ fn a_rival_that_is_level_or_ahead_is_not_told_apart() {
         let said = verdict(
             &browser,
             &with(|data| {
-                let rival = json!({ "effect": "subframe", "at": "body", "behind": behind, "early": false });
+                let rival = json!({ "effect": "subframe", "at": "body", "behind": behind });
                 data["discover"]["effects"][0]["rivals"][0] = rival;
             }),
         );

@@ -1,5 +1,6 @@
 //! Results of a search, and its progress messages.
 
+use super::observe::Evidence;
 use super::posterior::Explanation;
 
 /// Verdict of a search.
@@ -30,23 +31,22 @@ pub struct Finding {
     /// Increase of the log evidence by all findings together.
     pub evidence: f64,
     /// Share of the excess residual that the findings explain, on the held-out runs, or on the fitted runs if none is
-    /// held out.
-    pub explained: f64,
+    /// held out. `None` if the base model leaves no excess there, so that there is nothing to explain.
+    pub explained: Option<f64>,
     /// Next best explanations, best first.
     pub rivals: Vec<Rival>,
 }
 
-/// An alternative explanation.
+/// An alternative explanation: a candidate that was dropped before the last round of fits.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Rival {
     /// Name of the effect.
     pub effect: String,
     /// Link, mass or sensor location.
     pub at: String,
-    /// Log evidence of the best candidate minus its own; positive if it is worse.
+    /// Log evidence of the best candidate minus its own, from its last fit, which had not converged and may be to a
+    /// part of the data; at least 0.
     pub behind: f64,
-    /// True if it was dropped before the last round: `behind` then comes from a fit to a part of the data.
-    pub early: bool,
 }
 
 /// An effect that may be missing, with its probability.
@@ -62,7 +62,7 @@ pub struct Probable {
     /// do not support, and limiting cases of simpler sets, do not count.
     pub probability: f64,
     /// Share of the excess residual that the best of the smallest sets with it explains, as in [`Finding::explained`].
-    pub explained: f64,
+    pub explained: Option<f64>,
     /// Increase of the log evidence by that set.
     pub log_evidence: f64,
 }
@@ -97,7 +97,7 @@ pub struct Learned {
     /// The laws with their places and coefficients.
     pub laws: Vec<Finding>,
     /// Share of the excess residual that they explain, as in [`Finding::explained`].
-    pub explained: f64,
+    pub explained: Option<f64>,
     /// Duration of the longest run, s; a law over time is not determined beyond it.
     pub longest: f64,
     /// Explanation with the laws.
@@ -140,12 +140,8 @@ pub enum Update<'a> {
 /// Receives progress messages, from any thread.
 pub type Progress<'a> = &'a (dyn Fn(Update<'_>) + Sync);
 
-/// RMS of the normalised residual as text: of the held-out runs, or of the fitted runs if none is held out.
-pub(super) fn rms_text(of: &Explanation) -> String {
-    let rms = if of.misfit.held_out.is_finite() {
-        of.misfit.held_out
-    } else {
-        of.misfit.fit
-    };
+/// RMS of the normalised residual on the runs that judge the model, as text.
+pub(super) fn rms_text(of: &Explanation, evidence: &Evidence) -> String {
+    let rms = of.misfit.judged(evidence);
     format!("an RMS residual of {rms:.2} standard deviations")
 }

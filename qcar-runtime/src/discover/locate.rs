@@ -10,6 +10,8 @@
 mod missing_stiffness;
 // Local straight line through complex values.
 mod straight;
+// Lines of different runs at the same frequency.
+mod same_line;
 // Best change of all responses at one place, line by line.
 mod lines;
 // Missing dynamic stiffness at all places of a model.

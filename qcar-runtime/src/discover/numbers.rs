@@ -45,9 +45,9 @@ pub const GREATER_PART: f64 = 0.5;
 /// the normal distribution.
 pub const ONE_SIDED: f64 = 1.645;
 
-/// Probability of the base model below which a law is learned even if no effect is certain: something is then probably
-/// missing.
-pub const EVEN: f64 = 0.5;
+/// Probability of the base model below which it is doubtful: something is then probably missing, and a law is learned
+/// even if no effect is certain.
+pub const DOUBTFUL_BELOW: f64 = 0.5;
 
 impl Default for Numbers {
     fn default() -> Self {

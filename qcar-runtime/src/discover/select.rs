@@ -46,15 +46,15 @@ use fidelity::Fidelity;
 use first_law::FirstLaw;
 use held_out::supported_part;
 use probability::probabilities;
-use race::{MOST_REPETITIONS, may_gain_more};
+use race::{FINE_BUDGET, MOST_REPETITIONS, may_gain_more};
 use set::{Set, best_base, excess, explained_share, is_missing, keep_best, leaves_more_than_noise, most_probable};
 use verdict::conclude;
 
 pub use multi_start::{Minimum, MultiStart, fit_from_starts};
 
-use super::answer::{Discovery, Learned, Progress, Update, Verdict, rms_text};
+use super::answer::{DetectionLimit, Discovery, Learned, Progress, Update, Verdict, rms_text};
 use super::candidate::Workshop;
-use super::numbers::{EVEN, GREATER_PART, MOST_EFFECTS, Numbers};
+use super::numbers::{DOUBTFUL_BELOW, GREATER_PART, MOST_EFFECTS};
 use super::observe::{Evidence, PredictError, Quieter, Run, Stimulus};
 use super::posterior::{Explanation, Refit, Setting};
 use crate::campaign::Role;
@@ -115,7 +115,7 @@ fn is_more_probable(log_evidence: f64, than: &Set, evidence: &Evidence) -> bool 
 /// The search from a fitted base model. `known` is the answer for nearly the same data: the search may miss its minimum
 /// now, or find another. Also returns the set of the answer.
 fn search(base: Set, mut known: Option<Set>, evidence: &Evidence, progress: Progress<'_>) -> (Discovery, Set) {
-    let text = format!("the base model alone leaves {}", rms_text(&base.explanation));
+    let text = format!("the base model alone leaves {}", rms_text(&base.explanation, evidence));
     progress(Update::Interim(&text, &[], &base.explanation));
     let mut sets = vec![base];
     let mut law = FirstLaw::default();
@@ -134,7 +134,7 @@ fn search(base: Set, mut known: Option<Set>, evidence: &Evidence, progress: Prog
             let others = other_forms(&sets[place], &sets, evidence);
             sets.extend(others);
         }
-        report(&sets[best(&sets)], progress);
+        report(&sets[best(&sets)], evidence, progress);
     }
     // Remove effects that the evidence no longer supports beside those found later.
     while let Some(place) = unreduced(&sets) {
@@ -148,31 +148,48 @@ fn search(base: Set, mut known: Option<Set>, evidence: &Evidence, progress: Prog
         let others = exchanges(&sets[place], &sets, evidence);
         sets.extend(others);
     }
-    let base = &sets[best_base(&sets)];
     let (mut discovery, found) = conclude(&sets, evidence);
-    if is_unexplained(&discovery, base, evidence) {
-        let first = law.for_base(&sets, evidence, progress);
-        let learned = learn::learn(base, first, &sets[0], evidence, progress);
-        let learned = learned.map(|learned| learn::summary(base, learned, evidence));
-        discovery.take(learned, &evidence.numbers);
-    } else if discovery.verdict != Verdict::None && is_doubtful(&sets[found], base, evidence) {
-        // Several effects together can imitate a law that is not in the catalogue.
-        let law = law.for_base(&sets, evidence, progress);
-        let law = law.filter(|law| learn::is_supported(law, base, evidence));
-        let is_certain = |law: &Set| {
-            let probability = probabilities(&[&sets[found], law], evidence);
-            probability[1] > evidence.numbers.certain()
-        };
-        let law = law.filter(is_certain);
-        let law = law.filter(|law| contradicts(law, &sets[found], evidence));
-        discovery.prefer(law.map(|law| learn::summary(base, law, evidence)));
-    }
+    compare_with_law(&mut discovery, found, &sets, &mut law, evidence, progress);
     if discovery.verdict == Verdict::None {
-        let refit = &base.explanation.refit;
-        let steady = evidence.minus(&refit.unsteady).with_step_limit();
-        discovery.detection_limits = detection_limits(&base.assembly, refit, &Fidelity::of(&steady).fine);
+        discovery.detection_limits = limits(&sets[best_base(&sets)], evidence);
     }
     (discovery, sets.swap_remove(found))
+}
+
+/// Learns a law if the answer needs one, and replaces the findings by it if it is certainly more probable. `found` is
+/// the position of the set of the answer.
+fn compare_with_law(
+    discovery: &mut Discovery,
+    found: usize,
+    sets: &[Set],
+    law: &mut FirstLaw,
+    evidence: &Evidence,
+    progress: Progress<'_>,
+) {
+    let (base, found) = (&sets[best_base(sets)], &sets[found]);
+    if is_unexplained(discovery, base, evidence) {
+        let first = law.for_base(sets, evidence, progress);
+        let learned = learn::learn(base, first, &sets[0], evidence, progress);
+        let explains = |law: &Set| explained_share(base, law, evidence) >= evidence.numbers.explained();
+        let is_explained = learned.as_ref().is_some_and(explains);
+        let learned = learned.map(|learned| learn::summary(base, learned, evidence));
+        discovery.take(learned, is_explained);
+    } else if discovery.verdict != Verdict::None && is_doubtful(found, base, evidence) {
+        // Several effects together can imitate a law that is not in the catalogue.
+        let law = law.for_base(sets, evidence, progress);
+        let law = law.filter(|law| learn::is_supported(law, base, evidence));
+        let is_certain = |law: &Set| probabilities(&[found, law], evidence)[1] > evidence.numbers.certain();
+        let law = law.filter(is_certain);
+        let law = law.filter(|law| contradicts(law, found, evidence));
+        discovery.prefer(law.map(|law| learn::summary(base, law, evidence)));
+    }
+}
+
+/// Detection limits of the effects that a base model lacks, from the fitted runs.
+fn limits(base: &Set, evidence: &Evidence) -> Vec<DetectionLimit> {
+    let refit = &base.explanation.refit;
+    let steady = evidence.minus(&refit.unsteady).with_step_limit();
+    detection_limits(&base.assembly, refit, &Fidelity::of(&steady).fine)
 }
 
 /// True if all runs are records and the model leaves no more than noise in the fitted and in the held-out ones. The
@@ -194,7 +211,7 @@ fn needs_no_further_effect(sets: &[Set], set: usize, evidence: &Evidence) -> boo
 /// True if something is probably missing that no effect of the catalogue explains: the verdict is `Unknown`, or it is
 /// `None` with a probability below one half or with fitted residuals above noise.
 fn is_unexplained(discovery: &Discovery, base: &Set, evidence: &Evidence) -> bool {
-    let is_improbable = |probability: f64| probability < EVEN;
+    let is_improbable = |probability: f64| probability < DOUBTFUL_BELOW;
     match discovery.verdict {
         Verdict::Unknown => true,
         Verdict::None => discovery.probability.is_some_and(is_improbable) || leaves_more_than_noise(base, evidence),
@@ -203,10 +220,9 @@ fn is_unexplained(discovery: &Discovery, base: &Set, evidence: &Evidence) -> boo
 }
 
 impl Discovery {
-    /// Stores a learned law if the verdict is `Unknown`. A law that explains enough of the excess residual turns the
-    /// verdict `None` into `Unknown`: something is missing, however small.
-    fn take(&mut self, learned: Option<Learned>, numbers: &Numbers) {
-        let is_explained = learned.as_ref().is_some_and(|own| own.explained >= numbers.explained());
+    /// Stores a learned law if the verdict is `Unknown`. A law by which enough of the excess residual `is_explained`
+    /// turns the verdict `None` into `Unknown`: something is missing, however small.
+    fn take(&mut self, learned: Option<Learned>, is_explained: bool) {
         if is_explained && self.verdict == Verdict::None {
             self.verdict = Verdict::Unknown;
             self.probability = None;
@@ -314,11 +330,12 @@ fn best(sets: &[Set]) -> usize {
     most_probable(sets, 0..sets.len()).unwrap_or(0)
 }
 
-fn report(set: &Set, progress: Progress<'_>) {
+fn report(set: &Set, evidence: &Evidence, progress: Progress<'_>) {
     let names = set.named().map(|own| format!("{} at {}", own.effect, own.at));
     let names: Vec<String> = names.collect();
     if !names.is_empty() {
-        let words = format!("with {} it leaves {}", names.join(" and "), rms_text(&set.explanation));
+        let left = rms_text(&set.explanation, evidence);
+        let words = format!("with {} it leaves {left}", names.join(" and "));
         progress(Update::Interim(&words, &set.findings(), &set.explanation));
     }
 }
@@ -393,9 +410,6 @@ fn reductions(set: &Set, base: &Set, evidence: &Evidence, progress: Progress<'_>
         .collect()
 }
 
-/// Rounds and evaluations of a fit without an effect: those of the last round of a race.
-const WITHOUT: (usize, usize) = (2, 15);
-
 /// The set without one of its effects, by position; `None` if it cannot be assembled or fitted.
 fn without(left_out: usize, set: &Set, base: &Set, evidence: &Evidence) -> Option<Set> {
     let effects = set.assembly.effects();
@@ -405,12 +419,12 @@ fn without(left_out: usize, set: &Set, base: &Set, evidence: &Evidence) -> Optio
     let mut from = set.assembly.hypothesis().place(&set.explanation.refit);
     from.errors.truncate(base.assembly.hypothesis().sensor_errors());
     let steady = evidence.minus(&set.explanation.refit.unsteady).with_step_limit();
-    let mut refit = hypothesis.fit(&from, &steady, WITHOUT).ok()?;
+    let mut refit = hypothesis.fit(&from, &steady, FINE_BUDGET).ok()?;
     for _ in 0..MOST_REPETITIONS {
         if !may_gain_more(&refit) {
             break;
         }
-        refit = hypothesis.fit(&hypothesis.place(&refit), &steady, WITHOUT).ok()?;
+        refit = hypothesis.fit(&hypothesis.place(&refit), &steady, FINE_BUDGET).ok()?;
     }
     let explanation = finite_explanation(&hypothesis, refit, evidence)?;
     let share = set.log_prior * others.len() as f64 / effects.len() as f64;

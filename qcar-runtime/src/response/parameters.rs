@@ -136,6 +136,13 @@ impl Values {
         self.leader[parameter]
     }
 
+    /// The parameters that take the value of this one, itself included.
+    pub fn tied_to(&self, parameter: usize) -> Vec<usize> {
+        (0..self.leader.len())
+            .filter(|&k| self.leader[k] == parameter)
+            .collect()
+    }
+
     /// True if the model has clock parameters, so that it changes during a run.
     pub fn have_clocks(&self) -> bool {
         !self.clocks.is_empty()

@@ -21,6 +21,8 @@ pub struct Parts {
 pub struct Strut {
     pub about: About,
     parts: Parts,
+    /// Factor on its Jacobian; 1 is right.
+    pub jacobian_factor: f64,
 }
 
 const BASE: [(&str, &str); 9] = [
@@ -43,6 +45,7 @@ impl Strut {
         Self {
             about: about(parts),
             parts,
+            jacobian_factor: 1.0,
         }
     }
 
@@ -193,7 +196,11 @@ impl Model for Strut {
     }
 
     fn matrices(&self, p: &[f64], x: &[f64], u: &[f64], nonzeros: &mut [f64]) {
-        nonzeros.copy_from_slice(&self.dense(p, x, u));
+        let right = self.dense(p, x, u).into_iter();
+        nonzeros
+            .iter_mut()
+            .zip(right)
+            .for_each(|(own, right)| *own = self.jacobian_factor * right);
     }
 
     fn sensitivities(&self, p: &[f64], x: &[f64], u: &[f64], nonzeros: &mut [f64]) {

@@ -5,13 +5,15 @@ function effectPart(effect, effects) {
     'div',
     {},
     h('h3', {}, effectTitle(effect, effects)),
-    h(
-      'p',
-      {},
-      `It explains ${percent(effect.evidence.gap_closed, 3)} of the residual of the baseline model above noise, on the judging runs.`,
-    ),
+    h('p', {}, explainedPart(effect.evidence.gap_closed)),
     h('div', { class: 'columns two' }, strengthTable('What it is', effect), rivalTable(effect.rivals)),
   );
+}
+
+function explainedPart(share) {
+  return share === null
+    ? 'The judging runs leave no residual of the baseline model above noise, so there is nothing to explain.'
+    : `It explains ${percent(share, 3)} of the residual of the baseline model above noise, on the judging runs.`;
 }
 
 function strengthTable(title, { parameters, stderr, units }) {
@@ -37,17 +39,12 @@ function strengthTable(title, { parameters, stderr, units }) {
 function rivalTable(rivals) {
   if (!rivals.length) return null;
   return table(
-    'Rivals and their probability relative to the answer',
+    'Rivals and their probability relative to the answer, before their fits had converged',
     [
       ['effect', 'text sentence'],
       ['probability', 'text sentence'],
-      ['judged', 'text sentence'],
     ],
-    rivals.map((rival) => [
-      `${words(rival.effect)} at ${words(rival.at)}`,
-      odds(rival.behind),
-      rival.early ? 'before its fit had converged' : 'fit converged',
-    ]),
+    rivals.map((rival) => [`${words(rival.effect)} at ${words(rival.at)}`, odds(rival.behind)]),
   );
 }
 
@@ -61,7 +58,7 @@ function learnedPart({ laws, explained, gap }) {
     h(
       'p',
       {},
-      `This law has no physical cause, but explains ${percent(explained, 3)} of the residual above noise: the residual falls from ${number(judged.before)} to ${number(judged.after)} standard deviations with`,
+      `This law has no physical cause${explained === null ? '' : `, but explains ${percent(explained, 3)} of the residual above noise`}: the residual falls from ${number(judged.before)} to ${number(judged.after)} standard deviations with`,
     ),
     laws.map((law) => [
       h('h4', {}, placed(law)),

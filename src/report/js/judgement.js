@@ -81,7 +81,8 @@ function unneeded(gap) {
 function learnedLaw({ learned }) {
   if (!learned) return '';
   const laws = learned.laws.map(placed).join(' and ');
-  return ` Learned from the data, without a physical cause: ${laws}, which would explain ${percent(learned.explained, 3)} of it.`;
+  const share = learned.explained === null ? '' : `, which would explain ${percent(learned.explained, 3)} of it`;
+  return ` Learned from the data, without a physical cause: ${laws}${share}.`;
 }
 
 function likelihood({ probability }) {
@@ -98,8 +99,7 @@ function chance(probability) {
 function nextBest(chosen) {
   const rival = chosen && chosen.rivals[0];
   if (!rival) return '';
-  const settled = rival.early ? ', compared before its fit had converged' : '';
-  return ` The next best explanation, ${words(rival.effect)} at ${words(rival.at)}, is ${odds(rival.behind)}${settled}.`;
+  return ` The next best explanation, ${words(rival.effect)} at ${words(rival.at)}, is ${odds(rival.behind)}, compared before its fit had converged.`;
 }
 
 // The probability relative to the answer of a rival whose log evidence is lower by `behind`.

@@ -25,10 +25,17 @@ pub(super) fn table(finding: &Finding, of: &BTreeMap<String, String>) -> String 
     table.text()
 }
 
+/// Share of the residual that something explains, in words that follow its name.
+pub(super) fn share(explained: Option<f64>) -> String {
+    match explained {
+        Some(share) => format!("explains {:.1} % of the residual", 100.0 * share),
+        None => "has nothing to explain: the judging runs leave no residual above noise".into(),
+    }
+}
+
 /// Place, share of the residual, parameters and rivals. `among` is the number of findings of the same answer, which
 /// explain that share together.
 pub(super) fn described(finding: &Finding, among: usize, of: &BTreeMap<String, String>) -> String {
-    let share = 100.0 * finding.explained;
     let others = match among {
         0 | 1 => "",
         2 => ", with the other effect,",
@@ -39,9 +46,10 @@ pub(super) fn described(finding: &Finding, among: usize, of: &BTreeMap<String, S
         .as_deref()
         .map_or_else(String::new, |form| format!(" ({})", form.replace('_', " ")));
     let mut out = format!(
-        "{} at {}{form}{others} explains {share:.1} % of the residual\n{}",
+        "{} at {}{form}{others} {}\n{}",
         finding.effect,
         finding.at,
+        share(finding.explained),
         table(finding, of)
     );
     let undetermined = finding.parameters.iter().filter(|(_, _, error)| !error.is_finite());
@@ -74,10 +82,14 @@ mod tests {
             form: None,
             parameters: vec![("m_pwt".into(), 107.3, 1.1), ("k_pwt_x".into(), 3e5, f64::NAN)],
             evidence: 1e4,
-            explained: 1.0,
+            explained: None,
             rivals: Vec::new(),
         };
         let text = described(&finding, 1, &BTreeMap::new());
+        assert!(
+            text.starts_with("suspended_mass at body has nothing to explain"),
+            "{text}"
+        );
         assert!(text.ends_with("the fitted runs do not determine k_pwt_x\n"), "{text}");
     }
 }

@@ -43,9 +43,12 @@ fn errors(of: &Finding) -> Errors {
 
 /// Adds the laws to the model of the bench; `None` if one does not apply there.
 pub(super) fn learned_model(mut bench: Bench, learned: &Learned) -> Option<LearnedModel> {
+    let share = learned
+        .explained
+        .map(|share| format!("; this law explains {:.0} % of them", 100.0 * share));
     let why = format!(
-        "Evidence: no effect of the catalogue explains the residuals; this law explains {:.0} % of them.",
-        100.0 * learned.explained
+        "Evidence: no effect of the catalogue explains the residuals{}.",
+        share.unwrap_or_default()
     );
     let mut laws = Vec::new();
     let mut text = String::new();

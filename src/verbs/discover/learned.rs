@@ -7,7 +7,7 @@ use qcar_runtime::discover::answer::Finding;
 use serde::Serialize;
 
 use super::Answer;
-use super::finding::described;
+use super::finding::{described, share};
 use super::law::Law;
 use crate::json::Ordered;
 use crate::sensor_residuals::BeforeAfter;
@@ -18,7 +18,7 @@ pub(super) struct Learned<'a> {
     /// Place of the first law.
     at: &'a str,
     /// Share of the excess residual on the held-out runs that all laws explain.
-    explained: f64,
+    explained: Option<f64>,
     gap: BTreeMap<&'static str, BeforeAfter>,
     laws: Vec<One<'a>>,
     model_file: Option<String>,
@@ -72,13 +72,13 @@ pub(super) fn text(of: &Answer) -> String {
     };
     let places: Vec<String> = own.laws.iter().map(|law| format!("at {}", law.at)).collect();
     let mut out = format!(
-        "\nlearned from the data, without a physical cause: {} explains {:.1} % of the residual\n",
+        "\nlearned from the data, without a physical cause: {} {}\n",
         if places.len() == 1 {
             format!("a law {}", places[0])
         } else {
             format!("laws {}", places.join(" and "))
         },
-        100.0 * own.explained
+        share(own.explained)
     );
     for (finding, law) in own.laws.iter().zip(&model.laws) {
         let _ = writeln!(out, "\n{} at {}: {}", finding.effect, finding.at, law.words);

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use qcar_runtime::discover::answer::{DetectionLimit, Finding, Probable, Rival, Verdict};
-use qcar_runtime::discover::numbers::EVEN;
+use qcar_runtime::discover::numbers::DOUBTFUL_BELOW;
 use qcar_runtime::discover::observe::Kind;
 use qcar_runtime::discover::posterior::{Explanation, Tile};
 use qcar_runtime::mean::rms_or_nan;
@@ -86,8 +86,8 @@ struct Limit<'a> {
 struct Evidence {
     /// Increase of the log evidence by all findings.
     log_evidence: f64,
-    /// Share of the excess residual that the findings explain.
-    gap_closed: f64,
+    /// Share of the excess residual that the findings explain; `null` if there is none.
+    gap_closed: Option<f64>,
     /// Share of the sweeps' residual that is explained, relative to the largest share that any effect at this place
     /// could explain; `null` if there are several findings.
     of_ceiling: Option<f64>,
@@ -367,7 +367,7 @@ fn candidates(all: &[Probable]) -> String {
             own.effect.clone(),
             own.at.clone(),
             format!("{:.3}", own.probability),
-            number(100.0 * own.explained, 3),
+            or_dash(own.explained.map(|share| 100.0 * share), 3),
             number(own.log_evidence, 4),
         ]);
     }
@@ -424,7 +424,9 @@ fn nothing_found(of: &Answer) -> String {
 
 /// True if the probability of the answer is below one half.
 fn is_doubtful(of: &Answer) -> bool {
-    of.discovery.probability.is_some_and(|probability| probability < EVEN)
+    of.discovery
+        .probability
+        .is_some_and(|probability| probability < DOUBTFUL_BELOW)
 }
 
 /// Word before the name of a finding: `either` or `or` for an alternative.

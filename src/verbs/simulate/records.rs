@@ -87,7 +87,7 @@ type Signals = Vec<(Point, Vec<f64>)>;
 /// Simulated samples of the sensors of each run.
 fn simulated(model: &dyn Model, values: &Values, evidence: &Evidence) -> Result<Vec<Signals>, PredictError> {
     let nuisance = Nuisance::of(evidence);
-    let right = vec![0.0; nuisance.len()];
+    let right = vec![0.0; nuisance.count()];
     let mut conditions = TestConditions::default();
     estimate_initial_states(model, values, (&nuisance, &right), evidence, Role::Fit, &mut conditions)?;
     let runs = 0..evidence.runs.len();

@@ -288,7 +288,8 @@ fn closed(answer: &Value) -> f64 {
 }
 
 fn learned(value: &Value) -> Option<(String, f64)> {
-    Some((value["at"].as_str()?.to_owned(), value["explained"].as_f64()?))
+    let explained = value["explained"].as_f64().unwrap_or(0.0);
+    Some((value["at"].as_str()?.to_owned(), explained))
 }
 
 /// `effect@place:probability:explained`.

@@ -7,6 +7,7 @@
 use nalgebra::Complex;
 
 use super::missing_stiffness::{MissingStiffness, Place, RunStiffness};
+use super::same_line::same_line;
 use super::straight::Straight;
 use crate::discover::observe::{Evidence, Kind, Prediction, Series};
 use crate::discover::posterior::Refit;
@@ -116,12 +117,11 @@ impl Lines {
     ) -> MissingStiffness {
         let runs = self.runs.iter().zip(compliance);
         let each: Vec<Vec<Estimate>> = runs.map(|(run, h)| run.changes(direction, h)).collect();
-        let common = mean(&each);
-        let all = vec![common; each.len()];
+        let common = self.mean(&each);
         MissingStiffness {
             place,
             ceiling: self.explained(direction, compliance, &each),
-            common: self.explained(direction, compliance, &all),
+            common: self.explained(direction, compliance, &common),
             runs: self
                 .runs
                 .iter()
@@ -129,6 +129,22 @@ impl Lines {
                 .map(|(run, changes)| run.missing_stiffness(changes, &unit))
                 .collect(),
         }
+    }
+
+    /// For each line of each run, the weighted mean of the runs with a line at its frequency.
+    fn mean(&self, each: &[Vec<Estimate>]) -> Vec<Vec<Estimate>> {
+        let at = |frequency: &f64| {
+            let mut sums = Straight::default();
+            for (run, changes) in self.runs.iter().zip(each) {
+                if let Some(line) = same_line(&run.frequency, *frequency) {
+                    let (value, sigma) = changes[line];
+                    sums.add(0.0, Complex::ONE, value, sigma);
+                }
+            }
+            sums.solve()
+        };
+        let of_run = |run: &RunLines| run.frequency.iter().map(at).collect();
+        self.runs.iter().map(of_run).collect()
     }
 
     /// Share of the squared residual that the changes explain.
@@ -148,19 +164,6 @@ impl Lines {
         }
         1.0 - left / all
     }
-}
-
-/// Weighted mean of the runs for each line. Assumes that all runs begin with the same frequencies, so that a line has
-/// the same position in each of them.
-fn mean(each: &[Vec<Estimate>]) -> Vec<Estimate> {
-    let longest = each.iter().map(Vec::len).max().unwrap_or(0);
-    let of_line = |line: usize| {
-        let mut sums = Straight::default();
-        let of_runs = each.iter().filter_map(|run| run.get(line));
-        of_runs.for_each(|&(value, sigma)| sums.add(0.0, Complex::ONE, value, sigma));
-        sums.solve()
-    };
-    (0..longest).map(of_line).collect()
 }
 
 impl Direction {

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::missing_stiffness::{MissingStiffness, Place, RunStiffness};
+use super::same_line::same_line;
 
 /// Kind of law of a κ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
@@ -82,21 +83,20 @@ pub fn shape(kappa: &MissingStiffness) -> Shape {
     shares.iter().find(fits).map_or(Shape::Other, |(shape, _)| *shape)
 }
 
-/// Kind of law of a level-dependent κ; `None` if κ does not depend on the level.
+/// Kind of law of a level-dependent κ; `None` if κ does not depend on the level at the frequencies that both runs have.
 fn by_level(runs: &[RunStiffness]) -> Option<Shape> {
     let order = |a: &&RunStiffness, b: &&RunStiffness| a.level.total_cmp(&b.level);
     let (small, large) = (runs.iter().min_by(order)?, runs.iter().max_by(order)?);
     let (mut difference, mut all, mut grows) = (0.0, 0.0, 0.0);
-    for ((small, large), (a, b)) in small
-        .value
-        .iter()
-        .zip(&large.value)
-        .zip(small.sigma.iter().zip(&large.sigma))
-    {
-        let weight = weight(small.norm().max(large.norm()), a.hypot(*b));
-        let change = small - large;
+    for (line, frequency) in small.frequency.iter().enumerate() {
+        let Some(other) = same_line(&large.frequency, *frequency) else {
+            continue;
+        };
+        let (a, b) = (small.value[line], large.value[other]);
+        let weight = weight(a.norm().max(b.norm()), small.sigma[line].hypot(large.sigma[other]));
+        let change = a - b;
         difference += weight * change.norm_sqr();
-        all += weight * (small.norm_sqr() + large.norm_sqr()) / 2.0;
+        all += weight * (a.norm_sqr() + b.norm_sqr()) / 2.0;
         grows += weight * (change.re + change.im) * change.norm();
     }
     let depends = difference > LEVEL_DEPENDENT * all;

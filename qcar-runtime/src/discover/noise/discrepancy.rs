@@ -65,7 +65,7 @@ impl Discrepancy {
             }
         }
         let keys: Vec<Key> = groups.iter().map(|(key, ..)| key.clone()).collect();
-        let along = |key: &Key| keys.iter().filter(|other| other.is_beside(key)).count();
+        let along = |key: &Key| keys.iter().filter(|other| other.has_same_axis_and_kind(key)).count();
         let groups = groups
             .into_iter()
             .map(|(key, least, values)| Group::new(key.clone(), along(&key), least, values, &evidence.numbers));
@@ -89,7 +89,11 @@ impl Discrepancy {
     pub fn expected_of(&self, evidence: &Evidence, role: Role) -> Self {
         let mut expected = self.carried_to(evidence, role);
         for group in &mut expected.groups {
-            let beside = || self.groups.iter().filter(|known| known.key.is_beside(&group.key));
+            let beside = || {
+                self.groups
+                    .iter()
+                    .filter(|known| known.key.has_same_axis_and_kind(&group.key))
+            };
             if beside().all(|known| known.key != group.key) && beside().next().is_some() {
                 group.set(mean(beside().map(|known| known.tau)));
             }
@@ -129,7 +133,10 @@ impl Discrepancy {
         let mut axes: Vec<(&Key, f64)> = Vec::new();
         for group in self.groups.iter().filter(|own| own.key.kind == Kind::Passage) {
             let own: f64 = group.log_likelihoods(&residual).iter().sum();
-            match axes.iter_mut().find(|(known, _)| group.key.is_beside(known)) {
+            match axes
+                .iter_mut()
+                .find(|(known, _)| group.key.has_same_axis_and_kind(known))
+            {
                 Some((_, sum)) => *sum += own,
                 None => axes.push((&group.key, own)),
             }

@@ -141,7 +141,7 @@ impl Nuisance {
 
     /// Number of coefficients: [`SENSOR`] and the shelves for each sensor in turn, one for each suspect, and one for
     /// each initial state.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.of_sensors() + self.initial_states.len()
     }
 
@@ -158,11 +158,6 @@ impl Nuisance {
     /// Number of coefficients of each sensor.
     pub(super) fn of_a_sensor(&self) -> usize {
         SENSOR.len() + self.shelves
-    }
-
-    /// True if there are no sensors.
-    pub fn is_empty(&self) -> bool {
-        self.sensors.is_empty()
     }
 
     /// Prior standard deviation of each coefficient.

@@ -5,4 +5,5 @@ mod measured;
 // Simulated accelerations.
 mod predicted;
 
+pub use measured::envelope;
 pub use predicted::passage;

@@ -4,6 +4,7 @@
 
 use nalgebra::Complex;
 
+use super::run::line_at;
 use super::{Delay, Evidence, Kind, PredictError, Prediction, Run, Series, Stimulus};
 
 /// Smallest distance between these times, s: three periods of a body mode at 1 Hz, the slowest mode of an axle.
@@ -58,10 +59,7 @@ fn length(stimulus: &Stimulus) -> f64 {
 /// Time of each value of a series, s after the beginning of the run.
 fn moments(series: &Series, run: &Run) -> Vec<f64> {
     let swept = |at: &f64| match &run.stimulus {
-        Stimulus::Sweep { frequency, time, .. } => {
-            let place = frequency.iter().position(|f| f == at);
-            place.map_or(0.0, |place| time[place])
-        }
+        Stimulus::Sweep { frequency, time, .. } => time[line_at(frequency, *at)],
         _ => 0.0,
     };
     let start = match &run.stimulus {

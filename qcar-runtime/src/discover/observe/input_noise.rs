@@ -99,7 +99,8 @@ impl Quieter {
 fn notice(run: &str, sensor: &Point, removed: f64) -> String {
     let percent = 100.0 * removed;
     format!(
-        "{run}: the responses show that {percent:.2} % of the recorded input {sensor} is noise; it is removed where it hides the excitation"
+        "{run}: the responses show that {percent:.2} % of the recorded input {sensor} is noise; it is removed where it \
+         hides the excitation"
     )
 }
 

@@ -119,7 +119,8 @@ pub enum PredictError {
     Parameters(Vec<ParameterError>),
     /// The excitation of a run is no input of the model.
     #[error(
-        "model `{model}` has no input `{location}`, which drives {run}; choose a model that has it, or leave the run out"
+        "model `{model}` has no input `{location}`, which drives {run}; choose a model that has it, or leave the run \
+         out"
     )]
     NoInput {
         /// Name of the model.
@@ -131,8 +132,8 @@ pub enum PredictError {
     },
     /// A link of a dynamometer test is not in the model, or cannot be simulated alone.
     #[error(
-        "model `{model}` has no link `{link}` along {axis} that could stand on a dynamometer by itself; choose a model that has it, or \
-         leave {run} out"
+        "model `{model}` has no link `{link}` along {axis} that could stand on a dynamometer by itself; choose a model \
+         that has it, or leave {run} out"
     )]
     NoLink {
         /// Name of the model.

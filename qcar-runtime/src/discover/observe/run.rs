@@ -51,7 +51,7 @@ pub enum Stimulus {
         swept: Option<Arc<Swept>>,
         /// Sample rate, Hz.
         rate: f64,
-        /// Frequencies of the responses, Hz, increasing.
+        /// Frequencies of the responses, Hz, increasing. Each value of a series of the run is at one of them.
         frequency: Vec<f64>,
         /// Amplitude of the reference at these frequencies, in its unit.
         amplitude: Vec<f64>,
@@ -119,6 +119,12 @@ pub struct Recordings {
     pub whole: Range<f64>,
     /// Sensors with their samples.
     pub signals: Vec<(Point, Vec<f64>)>,
+}
+
+/// Position of a value at `at` (Hz) among the frequencies of its sweep.
+pub(super) fn line_at(frequency: &[f64], at: f64) -> usize {
+    let line = frequency.iter().position(|own| *own == at);
+    line.expect("a value of a sweep is at one of its frequencies")
 }
 
 impl Stimulus {

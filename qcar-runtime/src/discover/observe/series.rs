@@ -67,6 +67,11 @@ impl Kind {
         }
     }
 
+    /// Number of real parts of a value.
+    pub fn parts(self) -> usize {
+        if self.complex() { 2 } else { 1 }
+    }
+
     /// Frequency (Hz) at which a motion sensor reads the value at `at`; `None` if it has none.
     pub fn frequency(self, at: f64) -> Option<f64> {
         match self {
@@ -104,6 +109,17 @@ impl Series {
 
     /// Number of real residuals.
     pub fn residuals(&self) -> usize {
-        self.value.len() * if self.kind.complex() { 2 } else { 1 }
+        self.value.len() * self.kind.parts()
+    }
+}
+
+/// Position of the abscissa nearest to `wanted`. They increase, and there is at least one.
+pub fn nearest(at: &[f64], wanted: f64) -> usize {
+    let after = at.partition_point(|at| *at < wanted).min(at.len() - 1);
+    let before = after.saturating_sub(1);
+    if (at[before] - wanted).abs() < (at[after] - wanted).abs() {
+        before
+    } else {
+        after
     }
 }

@@ -74,7 +74,7 @@ impl Explanation {
     fn residual(&self, role: Role, evidence: &Evidence) -> Vec<f64> {
         let mut residual = Vec::new();
         for (place, series) in evidence.of_role(role) {
-            let parts = if series.kind.complex() { 2 } else { 1 };
+            let parts = series.kind.parts();
             let own = &self.misfit.residuals[place];
             let units = series
                 .sigma

@@ -31,7 +31,7 @@ impl Posterior<'_> {
             unseen: (0..count).map(|k| unseen(&information, k, count)).collect(),
             at_bound: outcome.at_bound[..count].to_vec(),
             free: self.free.clone(),
-            coefficients: outcome.x[count..][..self.nuisance.len()].to_vec(),
+            coefficients: outcome.x[count..][..self.nuisance.count()].to_vec(),
             chi2: 2.0 * outcome.cost,
             gained: outcome.start_cost - outcome.cost,
             log_evidence: self.log_evidence(&outcome),

@@ -92,6 +92,14 @@ impl Misfit {
             residuals,
         })
     }
+
+    /// RMS on the runs that judge the model: the held-out runs, or the fitted runs if none is held out.
+    pub fn judged(&self, evidence: &Evidence) -> f64 {
+        match evidence.of_role(Role::HeldOut).next() {
+            Some(_) => self.held_out,
+            None => self.fit,
+        }
+    }
 }
 
 /// Number of tiles in an octave.
@@ -103,7 +111,7 @@ fn tiles(evidence: &Evidence, residuals: &[Vec<f64>]) -> Vec<Tile> {
     let mut tiles = Vec::new();
     for (series, residuals) in evidence.series.iter().zip(residuals) {
         let mut sums: BTreeMap<i64, (f64, usize)> = BTreeMap::new();
-        let parts = if series.kind.complex() { 2 } else { 1 };
+        let parts = series.kind.parts();
         for (at, of_value) in series.at.iter().zip(residuals.chunks(parts)) {
             let sum = sums.entry(scale(series).place(*at).floor() as i64).or_default();
             sum.0 += of_value.iter().map(|residual| residual * residual).sum::<f64>();

@@ -26,7 +26,7 @@ pub fn remove_confounded(
     evidence: &Evidence,
 ) -> Result<Nuisance, PredictError> {
     let is_record = |run: &Run| run.role == Role::Fit && matches!(run.stimulus, Stimulus::History { .. });
-    let conditions = nuisance.conditions(evidence, &vec![0.0; nuisance.len()]);
+    let conditions = nuisance.conditions(evidence, &vec![0.0; nuisance.count()]);
     let predictions = predict_sides(model, [values, values], &conditions, free, evidence, &is_record)?;
     nuisance.without_offset.clear();
     for prediction in &predictions {

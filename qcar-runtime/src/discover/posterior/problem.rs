@@ -138,7 +138,7 @@ impl<'a> Posterior<'a> {
 
     /// Log factors of the recorded side.
     pub fn factors<'x>(&self, x: &'x [f64]) -> &'x [f64] {
-        &x[self.free.len() + self.nuisance.len()..]
+        &x[self.free.len() + self.nuisance.count()..]
     }
 
     /// Prediction of the fitted runs, with derivatives if `sloped`.
@@ -251,7 +251,7 @@ impl<'a> Posterior<'a> {
         for (k, slope) in prediction.slopes.iter().enumerate() {
             if one_sided && may_differ_by_side(self.model, &self.free[k]) {
                 let factor = self.factors(x)[k].exp();
-                let of_side = of_sensors + self.nuisance.len() + k;
+                let of_side = of_sensors + self.nuisance.count() + k;
                 add(&mut through(slope, &reading.factor, factor), k);
                 add(&mut through(slope, &reading.factor, factor * x[k]), of_side);
             } else {

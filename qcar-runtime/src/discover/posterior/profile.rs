@@ -7,6 +7,7 @@
 
 use super::problem::Posterior;
 use super::refit::Refit;
+use super::search::options;
 use crate::campaign::Role;
 use crate::discover::observe::Evidence;
 use crate::fit::profile::{CHANCE, ParameterProfile, QUANTILE};
@@ -14,14 +15,8 @@ use crate::least_squares::profile::{Profiled, profile};
 use crate::least_squares::{Options, Problem, minimize};
 use crate::model::Model;
 
-/// Tolerances and limits of the searches over the other variables.
-const OPTIONS: Options = Options {
-    gradient: 1e-5,
-    cost: 1e-6,
-    step: 1e-6,
-    decrement: 0.0,
-    evaluations: 20,
-};
+/// Options of the searches over the other variables, which converge as far as numbers allow.
+const OPTIONS: Options = options(0.0, 20);
 /// First step without a standard error, relative to the range.
 const FIRST: f64 = 0.02;
 

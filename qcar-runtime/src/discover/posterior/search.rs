@@ -24,16 +24,21 @@ const HELD: f64 = 1e-3;
 /// chance.
 pub const DECREMENT: f64 = 0.005;
 
+/// Options of a search that ends at a predicted gain of `decrement` or at this number of evaluations.
+pub const fn options(decrement: f64, evaluations: usize) -> Options {
+    Options {
+        gradient: 1e-5,
+        cost: 1e-6,
+        step: 1e-6,
+        decrement,
+        evaluations,
+    }
+}
+
 impl Posterior<'_> {
     /// Least-squares minimum from `start`.
     pub fn search(&mut self, start: &[f64], evaluations: usize) -> Result<Outcome, PredictError> {
-        let options = Options {
-            gradient: 1e-5,
-            cost: 1e-6,
-            step: 1e-6,
-            decrement: self.decrement,
-            evaluations,
-        };
+        let options = options(self.decrement, evaluations);
         self.start = start.to_vec();
         let bounds = self.bounds();
         let outcome = minimize(self, start, &bounds, &options);
@@ -42,7 +47,7 @@ impl Posterior<'_> {
 
     /// Bounds of the parameters, the sensor errors and the side factors.
     pub fn bounds(&self) -> Bounds {
-        let (sensors, sides) = self.sigmas.split_at(self.nuisance.len());
+        let (sensors, sides) = self.sigmas.split_at(self.nuisance.count());
         let sides = sides.iter().map(|sigma| SIDE_BOUND * sigma);
         let most = if self.discrepancy.is_some() {
             ERROR_BOUND

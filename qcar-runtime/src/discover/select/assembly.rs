@@ -89,7 +89,7 @@ impl Place {
         let mut there = self.clone();
         let (parameters, others) = change.as_slice().split_at(refit.free.len());
         let (sensors, others) = others.split_at(refit.nuisance.of_sensors());
-        let (states, sides) = others.split_at(refit.nuisance.len() - sensors.len());
+        let (states, sides) = others.split_at(refit.nuisance.count() - sensors.len());
         let name = |free: &Free| model.about().parameters[free.parameter].name.to_string();
         for (free, change) in refit.free.iter().zip(parameters) {
             let value = refit.values.as_slice()[free.parameter] + change;
@@ -284,7 +284,7 @@ impl<'a> Hypothesis<'a> {
 
     /// Number of coefficients of its sensor errors.
     pub fn sensor_errors(&self) -> usize {
-        self.nuisance.len()
+        self.nuisance.count()
     }
 
     /// All parameter values: the `known` ones, clamped to their ranges, and the given ones.
@@ -386,7 +386,7 @@ impl<'a> Hypothesis<'a> {
         let free = self.free();
         let parameters = &self.model.about().parameters;
         let mut errors = from.errors.clone();
-        errors.resize(self.nuisance.len(), 0.0);
+        errors.resize(self.nuisance.count(), 0.0);
         let side = |free: &Free| {
             from.sides
                 .get(&*parameters[free.parameter].name)

@@ -51,6 +51,6 @@ pub fn detection_limits(assembly: &Assembly, refit: &Refit, evidence: &Evidence)
 /// the effect, plus an Occam factor for each of its free parameters, which such a gain would narrow to a part of its
 /// range.
 fn needed(candidate: &Candidate, all: &[Candidate], gain: f64, numbers: &Numbers) -> f64 {
-    let odds = (numbers.certain() / numbers.error_probability).ln() - log_prior(candidate, all);
+    let odds = numbers.odds_of_certain().ln() - log_prior(candidate, all);
     odds + candidate.unknowns() as f64 * (1.0 + 2.0 * gain).ln() / 2.0
 }

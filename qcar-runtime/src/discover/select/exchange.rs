@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use super::assembly::{Assembly, Place, Placed};
 use super::fidelity::Fidelity;
 use super::finite_explanation;
+use super::race::FINE_BUDGET;
 use super::set::Set;
 use crate::discover::observe::Evidence;
 
@@ -103,7 +104,7 @@ fn exchanged(set: &Set, chosen: &Set, rival: &Set, sets: &[Set], evidence: &Evid
 fn refitted(assembly: Assembly, from: &Place, similar: &Set, log_prior: f64, evidence: &Evidence) -> Option<Set> {
     let hypothesis = assembly.hypothesis();
     let steady = evidence.minus(&similar.explanation.refit.unsteady).with_step_limit();
-    let refit = hypothesis.fit(from, &Fidelity::of(&steady).fine, (2, 15)).ok()?;
+    let refit = hypothesis.fit(from, &Fidelity::of(&steady).fine, FINE_BUDGET).ok()?;
     let explanation = finite_explanation(&hypothesis, refit, evidence)?;
     Some(Set::new(assembly, explanation, log_prior))
 }

@@ -7,7 +7,7 @@ use super::fidelity::{DECIMATION, Fidelity};
 use super::finite_explanation;
 use super::race::{Dropped, Finalist, entrants, race};
 use super::screen::{Point, Screened, Screening};
-use super::set::{Set, is_missing, keep_best};
+use super::set::{Set, above_noise, is_missing, keep_best};
 use super::{BASE, Progress, Update};
 use crate::discover::answer::Rival;
 use crate::discover::candidate::Candidate;
@@ -48,7 +48,7 @@ pub fn extensions(set: &Set, lead: f64, evidence: &Evidence, progress: Progress<
 
 /// True if `after` explains nearly all of the excess residual that `before` leaves in the fitted runs.
 pub fn explains_fitted(before: &Set, after: &Set, evidence: &Evidence) -> bool {
-    let [before, after] = [before, after].map(|set| (set.explanation.misfit.fit.powi(2) - 1.0).max(0.0));
+    let [before, after] = [before, after].map(|set| above_noise(set.explanation.misfit.fit));
     after <= evidence.numbers.error_probability * before
 }
 
@@ -166,8 +166,7 @@ fn rival(candidate: &Candidate, behind: f64) -> Rival {
     Rival {
         effect: candidate.effect.clone(),
         at: candidate.at.clone(),
-        behind: -behind,
-        early: true,
+        behind,
     }
 }
 

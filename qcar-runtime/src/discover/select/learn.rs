@@ -8,7 +8,7 @@ use super::extend::{SearchStart, explains_fitted};
 use super::held_out::predicts_better;
 use super::race::{Finalist, race};
 use super::screen::Entrant;
-use super::set::{Set, explained_share, is_missing};
+use super::set::{Set, explained_share, is_missing, stated_share};
 use super::{Progress, Update, finite_explanation, without};
 use crate::discover::answer::{Finding, Learned};
 use crate::discover::candidate::Candidate;
@@ -107,7 +107,7 @@ fn most_probable_law(
 
 /// The learned laws for the report.
 pub fn summary(base: &Set, learned: Set, evidence: &Evidence) -> Learned {
-    let explained = explained_share(base, &learned, evidence);
+    let explained = stated_share(base, &learned, evidence);
     let laws = learned.assembly.effects().iter();
     let law = |own: &Placed| Finding {
         effect: own.effect.clone(),

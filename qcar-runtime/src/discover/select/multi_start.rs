@@ -20,8 +20,11 @@ use crate::least_squares::Bounds;
 const SEARCHES: [(usize, usize); 3] = [(1, 8), (1, 30), (2, 30)];
 /// Rounds and evaluations of the final fit.
 const FINAL: (usize, usize) = (3, 60);
-/// Log evidence difference below which two searches count as the same minimum: odds of less than three to one.
-const SAME_MINIMUM: f64 = 1.0;
+/// Log evidence difference below which two searches may have found the same minimum: odds of less than three to one.
+const SAME_EVIDENCE: f64 = 1.0;
+/// Standard errors of each parameter within which they then have. A search whose log evidence is lower by less than
+/// [`SAME_EVIDENCE`] is at most √2 standard errors from its minimum, so two of them are at most 2.8 apart.
+const SAME_PLACE: f64 = 3.0;
 
 /// The best explanation by a model, and its other local minima.
 pub struct MultiStart {
@@ -33,7 +36,8 @@ pub struct MultiStart {
 
 /// A local minimum that is less probable than the best.
 pub struct Minimum {
-    /// Log odds against it, relative to the best.
+    /// Log odds against it relative to the best: the difference of the log evidences for all fitted runs, before the
+    /// non-steady part of sweeps is subtracted.
     pub log_odds: f64,
     /// Parameter values at the minimum by name, SI.
     pub named: BTreeMap<String, f64>,
@@ -59,8 +63,7 @@ pub fn fit_from_starts(
     progress(Update::Step(&format!("searching from {count} starts")));
     let minima = minima(&hypothesis, spread(assembly.given(), count), &fidelity)?;
     progress(Update::Step("refining the best fit"));
-    let best = hypothesis.fit(&hypothesis.place(&minima[0]), &fidelity.fine, SEARCHES[2])?;
-    let with_unsteady = hypothesis.explanation(best, evidence)?.refit;
+    let with_unsteady = hypothesis.explanation(minima[0].clone(), evidence)?.refit;
     // Subtract the non-steady part of the sweeps from the measurement; the fit compares steady harmonics only.
     let steady = Fidelity::of(&evidence.minus(&with_unsteady.unsteady)).fine;
     let refit = hypothesis.fit_to_convergence(&hypothesis.place(&with_unsteady), &steady, FINAL)?;
@@ -74,7 +77,7 @@ pub fn fit_from_starts(
     })
 }
 
-/// Distinct local minima, most probable first.
+/// Distinct local minima of all fitted runs, most probable first.
 fn minima(
     hypothesis: &Hypothesis<'_>,
     from: Vec<BTreeMap<String, f64>>,
@@ -86,10 +89,12 @@ fn minima(
     });
     let mut found = fitted(hypothesis, places.collect(), &fidelity.coarse, SEARCHES[0])?;
     found.truncate(found.len().div_ceil(2));
-    let places = found.iter().map(|refit| hypothesis.place(refit)).collect();
-    let found = distinct(fitted(hypothesis, places, &fidelity.coarse, SEARCHES[1])?);
-    let places = found.iter().map(|refit| hypothesis.place(refit)).collect();
-    Ok(distinct(fitted(hypothesis, places, &fidelity.medium, SEARCHES[2])?))
+    let searches = [&fidelity.coarse, &fidelity.medium, &fidelity.fine].into_iter();
+    for (evidence, budget) in searches.zip([SEARCHES[1], SEARCHES[2], SEARCHES[2]]) {
+        let places = found.iter().map(|refit| hypothesis.place(refit)).collect();
+        found = distinct(fitted(hypothesis, places, evidence, budget)?);
+    }
+    Ok(found)
 }
 
 /// Fits from these places, most probable first.
@@ -118,12 +123,21 @@ fn fitted(
 fn distinct(sorted: Vec<Refit>) -> Vec<Refit> {
     let mut distinct: Vec<Refit> = Vec::new();
     for refit in sorted {
-        let last = distinct.last();
-        if last.is_none_or(|last| last.log_evidence - refit.log_evidence > SAME_MINIMUM) {
+        if !distinct.iter().any(|known| is_same_minimum(known, &refit)) {
             distinct.push(refit);
         }
     }
     distinct
+}
+
+/// True if two fits of a model are equally probable and have the same parameters within their standard errors.
+fn is_same_minimum(one: &Refit, other: &Refit) -> bool {
+    let errors = one.stderr().into_iter().zip(other.stderr());
+    let mut parameters = one.estimate.iter().zip(&other.estimate).zip(errors);
+    // A parameter that neither fit determines has no standard error, and cannot tell them apart.
+    let is_apart =
+        |((one, other), errors): ((&f64, &f64), (f64, f64))| (one - other).abs() > SAME_PLACE * errors.0.max(errors.1);
+    (one.log_evidence - other.log_evidence).abs() <= SAME_EVIDENCE && !parameters.any(is_apart)
 }
 
 /// Start points: the given values, and others spread over the ranges.

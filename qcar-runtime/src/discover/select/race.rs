@@ -29,6 +29,9 @@ struct Round {
     starts: usize,
 }
 
+/// Searches and evaluations of each in a fit to all fitted runs. A choice that limits the time.
+pub const FINE_BUDGET: (usize, usize) = (2, 15);
+
 /// The rounds. Their numbers are choices: each has about twice the work for each candidate and fewer candidates.
 const ROUNDS: [Round; 4] = [
     Round {
@@ -55,7 +58,7 @@ const ROUNDS: [Round; 4] = [
     Round {
         evidence: |all| &all.fine,
         before: |all| &all.longer[1],
-        budget: (2, 15),
+        budget: FINE_BUDGET,
         kept: 3,
         starts: 1,
     },
@@ -81,7 +84,7 @@ pub struct Finalist {
 pub struct Dropped {
     /// Its position among the candidates.
     pub candidate: usize,
-    /// Its log evidence minus that of the best, in its last round; zero or negative.
+    /// Log evidence of the best minus its own, in its last round; at least 0.
     pub behind: f64,
 }
 
@@ -275,7 +278,7 @@ fn best<'a>(
         } else if *count == 0 {
             dropped.push(Dropped {
                 candidate: runner.candidate,
-                behind: -behind,
+                behind,
             });
         }
     }

@@ -10,7 +10,7 @@ use crate::campaign::Role;
 use crate::discover::answer::{Finding, Rival};
 use crate::discover::noise::AccuracyClass;
 use crate::discover::numbers::{Numbers, ONE_SIDED};
-use crate::discover::observe::{Evidence, Series};
+use crate::discover::observe::Evidence;
 use crate::discover::posterior::{Explanation, Refit};
 
 /// Rounds and evaluations of a fit to other evidence from a known optimum. A choice, ample so near an optimum.
@@ -33,8 +33,24 @@ pub struct Set {
     pub reduced: bool,
     /// Candidates that were dropped in the race that led to it.
     pub rivals: Vec<Rival>,
-    /// Its explanations with the sensors of other sets, by their log posteriors: see [`Self::with_sensors_of`].
-    pub with_sensors: Arc<Mutex<Vec<(f64, Explanation)>>>,
+    /// Its explanations with the sensors of other sets: see [`Self::with_sensors_of`].
+    with_sensors: Arc<Mutex<Vec<(Sensors, Explanation)>>>,
+}
+
+/// Estimated accuracy class and calibration errors of the sensors.
+#[derive(Clone, Debug, PartialEq)]
+struct Sensors {
+    accuracy: AccuracyClass,
+    errors: Vec<f64>,
+}
+
+impl Sensors {
+    fn of(refit: &Refit) -> Self {
+        Self {
+            accuracy: refit.nuisance.accuracy,
+            errors: refit.coefficients[..refit.nuisance.of_calibration()].to_vec(),
+        }
+    }
 }
 
 impl Set {
@@ -82,13 +98,16 @@ impl Set {
         if self.accuracy() <= other.accuracy() {
             return Cow::Borrowed(&self.explanation);
         }
-        let key = other.log_posterior();
+        let sensors = Sensors::of(&other.explanation.refit);
         let known = || self.with_sensors.lock().expect("no thread panics with the lock");
-        let there = known().iter().find(|(of, _)| *of == key).map(|(_, own)| own.clone());
+        let there = known()
+            .iter()
+            .find(|(of, _)| *of == sensors)
+            .map(|(_, own)| own.clone());
         let own = there.unwrap_or_else(|| {
             let refitted = self.refitted_with_sensors(&other.explanation.refit, evidence);
             let own = refitted.unwrap_or_else(|| self.explanation.clone());
-            known().push((key, own.clone()));
+            known().push((sensors, own.clone()));
             own
         });
         Cow::Owned(own)
@@ -113,7 +132,8 @@ impl Set {
         let percent = |class: AccuracyClass| format!("{:.1} %", 100.0 * class.gain());
         self.has_inaccurate_sensors().then(|| {
             format!(
-                "the gains of the sensors seem to change by {} over the band, where {} is usual; the answer allows for that",
+                "the gains of the sensors seem to change by {} over the band, where {} is usual; the answer allows for \
+                 that",
                 percent(class),
                 percent(AccuracyClass::default())
             )
@@ -140,7 +160,7 @@ impl Set {
         if self.names().is_empty() { 1.0 } else { numbers.further }
     }
 
-    /// Findings for all its effects, with `evidence` and `explained` left at 0.
+    /// Findings for all its effects, not compared with the base model.
     pub fn findings(&self) -> Vec<Finding> {
         let effects = self.assembly.effects().iter();
         let finding = |own: &Placed| Finding {
@@ -149,7 +169,7 @@ impl Set {
             form: own.form.clone(),
             parameters: own.unknowns.parameters(&self.explanation),
             evidence: 0.0,
-            explained: 0.0,
+            explained: None,
             rivals: self.rivals.clone(),
         };
         effects.map(finding).collect()
@@ -262,25 +282,48 @@ pub fn is_missing(set: &Set, evidence: &Evidence) -> bool {
 /// True if the fitted residuals are significantly larger than noise. For a right model their mean square is 1 with a
 /// standard deviation of `sqrt(2/n)` for `n` values.
 pub fn leaves_more_than_noise(set: &Set, evidence: &Evidence) -> bool {
-    let parts = |series: &Series| series.at.len() * if series.kind.complex() { 2 } else { 1 };
-    let values: usize = evidence.of_role(Role::Fit).map(|(_, series)| parts(series)).sum();
+    let values: usize = evidence.of_role(Role::Fit).map(|(_, series)| series.residuals()).sum();
     let scatter = (2.0 / values.max(1) as f64).sqrt();
     let square = set.explanation.misfit.fit.powi(2);
     square.is_nan() || square > 1.0 + ONE_SIDED * scatter
 }
 
 /// Share of the [`excess`] residual of `before` that `after` explains with the same sensor errors. It is negative, and
-/// at least -1, if `after` leaves more; it is 1 if neither leaves any.
+/// at least -1, if `after` leaves more. For a decision it is 1 if neither leaves any, since nothing then speaks against
+/// `after`; an answer states [`stated_share`].
 pub fn explained_share(before: &Set, after: &Set, evidence: &Evidence) -> f64 {
     let before = before.with_sensors_of(after, evidence);
     let left = excess(&after.explanation, evidence) / excess(&before, evidence).max(f64::MIN_POSITIVE);
     (1.0 - left).max(-1.0)
 }
 
-/// Excess residual: the mean square of the normalised residual above that of noise, which is 1; at least 0. It is that
-/// of the held-out runs, or of the fitted runs if none is held out.
+/// The same share as an answer states it; `None` if `before` leaves no excess, so that there is nothing to explain.
+pub fn stated_share(before: &Set, after: &Set, evidence: &Evidence) -> Option<f64> {
+    let is_something = excess(&before.with_sensors_of(after, evidence), evidence) > 0.0;
+    is_something.then(|| explained_share(before, after, evidence))
+}
+
+/// Excess residual of the held-out runs, or of the fitted runs if none is held out: see [`above_noise`].
 pub fn excess(own: &Explanation, evidence: &Evidence) -> f64 {
-    let held_out = evidence.of_role(Role::HeldOut).next().is_some();
-    let rms = if held_out { own.misfit.held_out } else { own.misfit.fit };
-    (rms.powi(2) - 1.0).max(0.0)
+    above_noise(own.misfit.judged(evidence))
+}
+
+/// Mean square of a normalised residual, from its RMS, above that of noise, which is 1; at least 0. It is infinite for
+/// NaN: a model that cannot predict the runs explains nothing.
+pub fn above_noise(rms: f64) -> f64 {
+    if rms.is_nan() {
+        f64::INFINITY
+    } else {
+        (rms.powi(2) - 1.0).max(0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::above_noise;
+
+    #[test]
+    fn a_model_that_cannot_predict_the_runs_explains_nothing() {
+        assert_eq!([2.0, 0.5, f64::NAN].map(above_noise), [3.0, 0.0, f64::INFINITY]);
+    }
 }

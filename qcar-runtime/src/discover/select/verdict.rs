@@ -2,7 +2,7 @@
 
 use super::answers::{Answer, answers, credible};
 use super::assembly::Placed;
-use super::set::{Set, best_base, explained_share, is_missing, is_part};
+use super::set::{Set, best_base, explained_share, is_missing, is_part, stated_share};
 use crate::discover::answer::{Discovery, Finding, Probable, Verdict};
 use crate::discover::numbers::GREATER_PART;
 use crate::discover::observe::Evidence;
@@ -64,7 +64,7 @@ fn finding(set: &Set, own: &Placed, base: &Set, evidence: &Evidence) -> Finding 
         form: own.form.clone(),
         parameters: own.unknowns.parameters(&set.explanation),
         evidence: set.explanation.refit.log_evidence - base.explanation.refit.log_evidence,
-        explained: explained_share(base, set, evidence),
+        explained: stated_share(base, set, evidence),
         rivals: set.rivals.clone(),
     }
 }
@@ -133,7 +133,7 @@ fn candidates(sets: &[Set], answers: &[Answer], before: &Set, evidence: &Evidenc
             at: name.1.to_owned(),
             form,
             probability: share(answers.iter().filter(holds).map(|own| own.probability).sum(), all),
-            explained: explained_share(before, best, evidence),
+            explained: stated_share(before, best, evidence),
             log_evidence: best.explanation.refit.log_evidence - before.explanation.refit.log_evidence,
         })
     });

@@ -1,7 +1,7 @@
 //! Values that a discrepancy correlates, with their position and signal.
 
 use crate::discover::numbers::Numbers;
-use crate::discover::observe::{Evidence, Kind, Series};
+use crate::discover::observe::{Evidence, Kind, Series, envelope, nearest};
 use crate::mean::rms;
 
 /// A value of a group.
@@ -17,7 +17,7 @@ pub struct Value {
 
 /// The values of a series; `first` is the row of its first residual.
 pub fn values(evidence: &Evidence, series: &Series, first: usize) -> Vec<Value> {
-    let parts = if series.kind.complex() { 2 } else { 1 };
+    let parts = series.kind.parts();
     let (places, signal) = (places(series, &evidence.numbers), signal(evidence, series));
     let of = |k: usize| Value {
         run: series.run,
@@ -76,24 +76,7 @@ fn signal(evidence: &Evidence, series: &Series) -> Vec<f64> {
             None => own,
         },
         Kind::Time | Kind::Travel | Kind::Width | Kind::Speed => vec![rms(&own); own.len()],
-        Kind::Passage => {
-            let around = |k: usize| rms(&own[k.saturating_sub(AROUND)..(k + AROUND + 1).min(own.len())]);
-            (0..own.len()).map(around).collect()
-        }
-    }
-}
-
-/// Number of values on each side for the signal of a passage. With means of 5 ms they span about one period of wheel
-/// hop.
-const AROUND: usize = 10;
-
-fn nearest(at: &[f64], wanted: f64) -> usize {
-    let after = at.partition_point(|at| *at < wanted).min(at.len() - 1);
-    let before = after.saturating_sub(1);
-    if (at[before] - wanted).abs() < (at[after] - wanted).abs() {
-        before
-    } else {
-        after
+        Kind::Passage => (0..own.len()).map(|k| envelope(&own, k)).collect(),
     }
 }
 

@@ -180,6 +180,7 @@ fn obstacle(road: &Road) -> f64 {
     vertices[flat - 1][0]
 }
 
-fn envelope(values: &[f64], k: usize) -> f64 {
+/// RMS of a passage around the `k`-th of its values, over one period of wheel hop.
+pub fn envelope(values: &[f64], k: usize) -> f64 {
     rms(&values[k.saturating_sub(AROUND)..(k + AROUND + 1).min(values.len())])
 }

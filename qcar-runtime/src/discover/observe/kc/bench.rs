@@ -220,18 +220,21 @@ impl<'a> Drive<'a> {
         self.bench.wheel_of(&self.of_unit)
     }
 
-    /// Moves the free states over `h` s by Newton's method. A linear model has a constant Jacobian, so its first step
-    /// is exact.
-    pub fn follow(&mut self, h: f64) {
+    /// Moves the free states over `h` s by Newton's method; false if it does not converge. A linear model has a constant
+    /// Jacobian, so its first step is exact.
+    pub fn follow(&mut self, h: f64) -> bool {
         let last = self.free_values();
         for _ in 0..STEPS {
             let residual = self.residual(&last, h);
             let step = self.factor(h).and_then(|factor| factor.solve(residual));
-            let Some(step) = step else { break };
+            let Some(step) = step else {
+                return last.is_empty();
+            };
             if self.step(&step, &last, h) || self.model.about().linear {
-                break;
+                return true;
             }
         }
+        false
     }
 
     /// The factorised Jacobian at the present states; `None` if there are no free states or an entry is not finite.

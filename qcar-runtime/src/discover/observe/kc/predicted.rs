@@ -40,14 +40,7 @@ pub fn travel(
     };
     let not_on_rig = || PredictError::no_input(model.about(), of_run, &on.wheel);
     let bench = Bench::new(model.about(), on, axis).ok_or_else(not_on_rig)?;
-    let parameters = 0..values.as_slice().len();
-    let tied = |free: &Free| {
-        parameters
-            .clone()
-            .filter(|&k| values.leader(k) == free.parameter)
-            .collect()
-    };
-    let directions: Vec<Vec<usize>> = free.iter().map(tied).collect();
+    let directions: Vec<Vec<usize>> = free.iter().map(|free| values.tied_to(free.parameter)).collect();
     let forces = bench.forces(model, values.as_slice(), &directions, &course.path);
     let forces = forces.ok_or_else(not_on_rig)?;
     let predict = |&(place, series): &(usize, &Series)| {

@@ -17,7 +17,8 @@ const SMALL: f64 = 1e-5;
 
 impl Bench {
     /// Force on the wheel (N) at each instant of `path` that is read, and in further rows its derivatives along some
-    /// directions: parameters that change together. The path begins at rest. `None` if a force on the wheel accelerates
+    /// directions: parameters that change together. The path begins at rest. The forces are NaN from the first instant
+    /// whose states cannot be found, so that a fit rejects these parameters. `None` if a force on the wheel accelerates
     /// nothing.
     pub fn forces(
         &self,
@@ -31,12 +32,13 @@ impl Bench {
         let mut tangents = tangents.collect::<Option<Vec<Tangent>>>()?;
         let mut by_parameter = vec![0.0; model.about().parameter_jacobian.len()];
         let mut forces = vec![Vec::with_capacity(path.len()); 1 + directions.len()];
+        let mut is_followed = true;
         for instant in path {
             drive.set_motion(instant);
-            drive.follow(instant.step);
+            is_followed &= drive.follow(instant.step);
             let force = drive.force();
             if instant.is_read {
-                forces[0].push(force);
+                forces[0].push(if is_followed { force } else { f64::NAN });
             }
             if tangents.is_empty() {
                 continue;

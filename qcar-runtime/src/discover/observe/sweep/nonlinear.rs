@@ -3,8 +3,9 @@
 use nalgebra::Complex;
 
 use super::excitation;
+use crate::discover::observe::run::line_at;
 use crate::discover::observe::{Evidence, Free, Kind, PredictError, Prediction, Series, Stimulus, order_of, signal_of};
-use crate::model::{About, Model};
+use crate::model::Model;
 use crate::response::parameters::Values;
 use crate::response::periodic::{Cycle, Drive, Periodic};
 use crate::response::signal::output_of;
@@ -50,31 +51,24 @@ pub fn sweep(
         readings.push(Reading {
             place,
             series,
+            lines: series.at.iter().map(|at| line_at(frequency, *at)).collect(),
             output,
             power,
         });
     }
     let outputs: Vec<usize> = readings.iter().map(|reading| reading.output).collect();
-    let groups = groups(about, values, free);
+    let groups: Vec<Vec<usize>> = free.iter().map(|free| values.tied_to(free.parameter)).collect();
     let cycles = Periodic::new(model, excitation, HARMONICS).walk(values.as_slice(), &drives, &outputs, &groups);
     let predict = |reading: &Reading| reading.prediction(&drives, &cycles, free.len());
     Ok(readings.iter().map(predict).collect())
-}
-
-/// For each free parameter, the positions of all parameters tied to it, itself included.
-fn groups(about: &About, values: &Values, free: &[Free]) -> Vec<Vec<usize>> {
-    let with = |free: &Free| {
-        (0..about.parameters.len())
-            .filter(|&k| values.leader(k) == free.parameter)
-            .collect()
-    };
-    free.iter().map(with).collect()
 }
 
 /// How a series is read from the periodic responses.
 struct Reading<'a> {
     place: usize,
     series: &'a Series,
+    /// Positions of its values among the frequencies of the sweep.
+    lines: Vec<usize>,
     /// Position of the output.
     output: usize,
     /// Power of jω from the output to the sensor.
@@ -86,27 +80,25 @@ impl Reading<'_> {
         let Kind::Harmonic(harmonic) = self.series.kind else {
             unreachable!("a sweep has no other series")
         };
-        let at = |f: &f64| drives.iter().position(|drive| drive.frequency == *f).unwrap_or(0);
-        let places: Vec<usize> = self.series.at.iter().map(at).collect();
-        let scale = |place: usize| {
-            let drive = drives[place];
+        let scale = |line: usize| {
+            let drive = drives[line];
             let omega = std::f64::consts::TAU * drive.frequency * harmonic as f64;
             Complex::new(0.0, omega).powi(self.power) / drive.amplitude
         };
-        let value = |&place: &usize| cycles[place].output(self.output)[harmonic] * scale(place);
+        let value = |&line: &usize| cycles[line].output(self.output)[harmonic] * scale(line);
         let slope = |k: usize| {
-            let along = |&place: &usize| cycles[place].slope(k, self.output)[harmonic] * scale(place);
-            places.iter().map(along).collect()
+            let along = |&line: &usize| cycles[line].slope(k, self.output)[harmonic] * scale(line);
+            self.lines.iter().map(along).collect()
         };
-        let by_drive = |&place: &usize| {
-            let moved = cycles[place].louder(self.output)[harmonic] - cycles[place].output(self.output)[harmonic];
-            moved * scale(place)
+        let by_drive = |&line: &usize| {
+            let moved = cycles[line].louder(self.output)[harmonic] - cycles[line].output(self.output)[harmonic];
+            moved * scale(line)
         };
         Prediction {
             series: self.place,
-            value: places.iter().map(value).collect(),
+            value: self.lines.iter().map(value).collect(),
             by_drive: if free > 0 {
-                vec![places.iter().map(by_drive).collect()]
+                vec![self.lines.iter().map(by_drive).collect()]
             } else {
                 Vec::new()
             },

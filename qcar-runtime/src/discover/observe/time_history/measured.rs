@@ -1,5 +1,8 @@
 //! Reads a time history: sample-by-sample responses.
 
+use std::iter::StepBy;
+use std::ops::Range;
+
 use nalgebra::Complex;
 
 use super::noise::noise;
@@ -19,6 +22,8 @@ const ENDS: f64 = 0.02;
 const MOST_VALUES: usize = 2000;
 /// Smallest error of any calibration and any model of a real system, as a share of the RMS of the response.
 const FLOOR: f64 = 0.005;
+/// Values in half a mean period of a record: they resolve its first eight harmonics, and more add little information.
+const IN_HALF_A_PERIOD: f64 = 8.0;
 
 impl Evidence {
     pub(in crate::discover::observe) fn add_history(
@@ -32,33 +37,103 @@ impl Evidence {
             band_limited, periodic, ..
         } = *recording;
         let history = campaign.history(run)?;
-        let known = self.keep_known(about, &run.name, sensors(about, &history));
+        let Some(Signals { inputs, responses }) = self.signals(about, &run.name, &history)? else {
+            return Ok(());
+        };
+        if periodic {
+            check_periodic(about, campaign, run, inputs.is_empty())?;
+        }
+        let part = Part::of(&history, recording, !inputs.is_empty())?;
+        let (place, rate) = (self.runs.len(), history.sample_rate);
+        let driven: Vec<&[f64]> = inputs.iter().map(|(_, samples)| samples.as_slice()).collect();
+        let noises = responses.iter().map(|(_, samples)| noise(samples, &driven, periodic));
+        let noises: Vec<f64> = noises.collect();
+        let series = responses.iter().zip(&noises);
+        self.series
+            .extend(series.map(|((sensor, samples), noise)| part.series(place, sensor, samples, *noise)));
+        // A periodic motion ends as it begins.
+        let (spread, restarts) = if periodic {
+            (Spread::default(), Vec::new())
+        } else {
+            let spread = Spread::of(&responses, &noises, &inputs, rate);
+            (spread, restarts(about, run.role, &responses, rate))
+        };
+        let first = inputs.first().unwrap_or(&responses[0]);
+        self.runs.push(Run {
+            name: run.name.clone(),
+            role: run.role,
+            level: deviation(&first.1),
+            stimulus: Stimulus::History {
+                restarts,
+                rate,
+                band_limited,
+                spread,
+                band: part.band,
+                periodic,
+                inputs: Recordings {
+                    start: history.start,
+                    samples: history.len(),
+                    whole: history.start..history.start + history.len() as f64 / rate,
+                    signals: inputs,
+                },
+            },
+        });
+        Ok(())
+    }
+
+    /// Signals of the sensors at places of the model; adds a notice and returns `None` if none is a response.
+    fn signals(&mut self, about: &About, run: &str, history: &History) -> Result<Option<Signals>, InputError> {
+        let known = self.keep_known(about, run, sensors(about, history));
         let (inputs, responses): (Vec<_>, Vec<_>) = known
             .into_iter()
             .partition(|point| excitation_of(about, point).is_some());
         if responses.is_empty() {
             self.notices
-                .push(format!("{}: no response was recorded; the run is left out", run.name));
-            return Ok(());
+                .push(format!("{run}: no response was recorded; the run is left out"));
+            return Ok(None);
         }
         if inputs.is_empty() {
             self.notices.push(format!(
-                "{}: no input of the model was recorded; the run is taken for one that nothing drives",
-                run.name
+                "{run}: no input of the model was recorded; the run is taken for one that nothing drives"
             ));
         }
-        let mut signals = Vec::new();
-        for point in inputs {
-            let samples = signal(&history, &point)?;
-            signals.push((point, samples));
-        }
-        let (place, rate) = (self.runs.len(), history.sample_rate);
-        let driven: Vec<&[f64]> = signals.iter().map(|(_, samples)| samples.as_slice()).collect();
-        if periodic {
-            check_periodic(about, campaign, run, signals.is_empty())?;
-        }
+        let read = |points: Vec<Point>| -> Result<Vec<(Point, Vec<f64>)>, InputError> {
+            let samples = |point: Point| Ok((point.clone(), signal(history, &point)?));
+            points.into_iter().map(samples).collect()
+        };
+        Ok(Some(Signals {
+            inputs: read(inputs)?,
+            responses: read(responses)?,
+        }))
+    }
+}
+
+/// Recorded signals, by their sensors.
+struct Signals {
+    /// Those of the excitations of the model.
+    inputs: Vec<(Point, Vec<f64>)>,
+    responses: Vec<(Point, Vec<f64>)>,
+}
+
+/// The part of a record that is compared.
+struct Part {
+    /// Time of the first sample, s.
+    start: f64,
+    /// Sample rate, Hz.
+    rate: f64,
+    band: Option<Band>,
+    periodic: bool,
+    /// Samples of the values, before the series is thinned.
+    inside: StepBy<Range<usize>>,
+}
+
+impl Part {
+    /// # Errors
+    /// Fails if the record is too short.
+    fn of(history: &History, recording: &Recording, is_driven: bool) -> Result<Self, InputError> {
+        let (rate, periodic) = (history.sample_rate, recording.periodic);
         let band = recording.band.map(|band| Band::new(band, rate));
-        let ends = if band_limited && !signals.is_empty() && !periodic {
+        let ends = if recording.band_limited && is_driven && !periodic {
             ENDS
         } else {
             0.0
@@ -66,55 +141,40 @@ impl Evidence {
         let reach = band.as_ref().filter(|_| !periodic).map_or(0, Band::half);
         let stride = band.as_ref().map_or(1, |band| band.stride(rate));
         let cut = reach.max((ends * history.len() as f64) as usize);
-        let Some(inside) = inside(history.len(), cut, stride) else {
-            return Err(too_short(&history, recording, reach));
+        let inside = inside(history.len(), cut, stride).ok_or_else(|| too_short(history, recording, reach))?;
+        Ok(Self {
+            start: history.start,
+            rate,
+            band,
+            periodic,
+            inside,
+        })
+    }
+
+    /// Series of a sensor with this noise.
+    fn series(&self, run: usize, sensor: &Point, samples: &[f64], noise: f64) -> Series {
+        let filtered = self.band.as_ref().map(|band| band.of(samples, self.periodic));
+        let samples = filtered.as_deref().unwrap_or(samples);
+        let noise = self.band.as_ref().map_or(1.0, Band::of_noise) * noise;
+        let at: Vec<f64> = self.inside.clone().map(|k| self.start + k as f64 / self.rate).collect();
+        let mut series = Series {
+            run,
+            sensor: sensor.clone(),
+            kind: Kind::Time,
+            sigma: vec![noise.hypot(FLOOR * deviation(samples)); at.len()],
+            noise: vec![noise.hypot(LEAST_NOISE * deviation(samples)); at.len()],
+            least_discrepancy: FLOOR,
+            at,
+            value: self.inside.clone().map(|k| Complex::from(samples[k])).collect(),
         };
-        let (mut recorded, mut noises) = (Vec::new(), Vec::new());
-        for sensor in responses {
-            let samples = signal(&history, &sensor)?;
-            let noise = noise(&samples, &driven, periodic);
-            let compared = band.as_ref().map(|band| band.of(&samples, periodic));
-            let compared = compared.as_ref().unwrap_or(&samples);
-            let passed = band.as_ref().map_or(1.0, Band::of_noise) * noise;
-            let times = |k: usize| history.start + k as f64 / rate;
-            self.series
-                .push(series(place, sensor.clone(), (compared, passed), inside.clone(), times));
-            recorded.push((sensor, samples));
-            noises.push(noise);
-        }
-        // A periodic motion ends as it begins.
-        let (spread, restarts) = if periodic {
-            (Spread::default(), Vec::new())
-        } else {
-            let spread = Spread::of(&recorded, &noises, &signals, rate);
-            (spread, restarts(about, run.role, &recorded, rate))
-        };
-        let first = signals.first().unwrap_or(&recorded[0]);
-        self.runs.push(Run {
-            name: run.name.clone(),
-            role: run.role,
-            level: deviation(&first.1),
-            stimulus: Stimulus::History {
-                restarts,
-                inputs: Recordings {
-                    start: history.start,
-                    samples: history.len(),
-                    whole: history.start..history.start + history.len() as f64 / rate,
-                    signals,
-                },
-                rate,
-                band_limited,
-                spread,
-                band,
-                periodic,
-            },
-        });
-        Ok(())
+        let step = (series.at[series.at.len() - 1] - series.at[0]) / series.at.len() as f64;
+        series.thin(((series.half_a_period() / (IN_HALF_A_PERIOD * step)) as usize).max(1));
+        series
     }
 }
 
 /// Evenly spaced samples of a record without `cut` samples at each end; `None` if too few are left.
-fn inside(samples: usize, cut: usize, stride: usize) -> Option<impl Iterator<Item = usize> + Clone> {
+fn inside(samples: usize, cut: usize, stride: usize) -> Option<StepBy<Range<usize>>> {
     const FEWEST: usize = 20;
     let left = samples.saturating_sub(2 * cut);
     let inside = (cut..cut + left).step_by(left.div_ceil(MOST_VALUES).max(stride));
@@ -127,7 +187,8 @@ fn too_short(history: &History, recording: &Recording, reach: usize) -> InputErr
     let (expected, remedy) = match recording.band {
         Some((low, high)) => (
             format!(
-                "one longer than the {} s that the filter of `band = [{low}, {high}]` takes, by 20 samples of that band",
+                "one longer than the {} s that the filter of `band = [{low}, {high}]` takes, by 20 samples of that \
+                 band",
                 seconds(2 * reach)
             ),
             "widen the band towards zero, leave it out, or export a longer record",
@@ -157,29 +218,3 @@ fn check_periodic(
     let remedy = "leave `periodic` out: the state at the beginning is estimated then";
     Err(Problem::new(campaign.manifest(), place, why, "a motion that repeats", remedy).into())
 }
-
-fn series(
-    run: usize,
-    sensor: Point,
-    (samples, noise): (&[f64], f64),
-    inside: impl Iterator<Item = usize> + Clone,
-    time: impl Fn(usize) -> f64,
-) -> Series {
-    let at: Vec<f64> = inside.clone().map(time).collect();
-    let mut series = Series {
-        run,
-        sensor,
-        kind: Kind::Time,
-        sigma: vec![noise.hypot(FLOOR * deviation(samples)); at.len()],
-        noise: vec![noise.hypot(LEAST_NOISE * deviation(samples)); at.len()],
-        least_discrepancy: FLOOR,
-        at,
-        value: inside.map(|k| Complex::from(samples[k])).collect(),
-    };
-    let step = (series.at[series.at.len() - 1] - series.at[0]) / series.at.len() as f64;
-    series.thin(((series.half_a_period() / (IN_HALF_A_PERIOD * step)) as usize).max(1));
-    series
-}
-
-/// Values in half a mean period of a record: they resolve its first eight harmonics, and more add little information.
-const IN_HALF_A_PERIOD: f64 = 8.0;

@@ -72,11 +72,9 @@ fn directions(
     states: &[usize],
 ) -> Vec<Direction> {
     let about = model.about();
-    let together = |free: &Free| {
-        let all = 0..about.parameters.len();
-        Direction::Parameters(all.filter(|&own| values.leader(own) == free.parameter).collect())
-    };
-    let parameters = free.iter().map(together);
+    let parameters = free
+        .iter()
+        .map(|free| Direction::Parameters(values.tied_to(free.parameter)));
     let states = states.iter().map(|&state| Direction::Initial(state));
     let driven = inputs.signals.iter().filter(|_| !free.is_empty());
     let amplitudes = driven.filter_map(|(point, _)| excitation_of(about, point).map(Direction::Amplitude));
