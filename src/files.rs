@@ -7,6 +7,8 @@ use std::{fs, process};
 use qcar_runtime::bounded;
 use qcar_runtime::error::{InputError, Place, Problem};
 
+use crate::failure::{Failure, flag};
+
 /// Reads a text file.
 ///
 /// # Errors
@@ -33,6 +35,20 @@ pub fn folder_for_results(name: &str) -> Result<PathBuf, String> {
             existing.display()
         )),
     }
+}
+
+/// Checks that the file of the flag `--out` replaces no other.
+///
+/// # Errors
+/// Fails if the name is in use.
+pub fn must_be_free(path: &Path) -> Result<(), Failure> {
+    // A link to nothing is a name in use too.
+    if path.symlink_metadata().is_err() {
+        return Ok(());
+    }
+    let found = format!("{}, which exists already", path.display());
+    let remedy = "choose another name, or move the file away";
+    Err(flag("--out", found, "a name that is not in use", remedy).into())
 }
 
 /// Completed files in the order of writing. The lock is held while a file is written.

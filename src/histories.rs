@@ -35,21 +35,29 @@ pub struct History {
     pub channels: Vec<Channel>,
 }
 
+impl Kind {
+    /// The name of a file of this kind.
+    pub fn file(self, name: &str) -> String {
+        match self {
+            Kind::Csv => format!("{name}.csv"),
+            Kind::Mat | Kind::Mat73 => format!("{name}.mat"),
+            Kind::Mdf => format!("{name}.mf4"),
+        }
+    }
+}
+
 impl History {
     /// Writes the file into a folder.
     ///
     /// # Errors
     /// Fails if the folder cannot be written to.
     pub fn put(&self, folder: &Path, kind: Kind) -> Result<(), InputError> {
+        let file = kind.file(&self.name);
         match kind {
-            Kind::Csv => put(folder, &format!("{}.csv", self.name), &self.csv()),
-            Kind::Mat => put(
-                folder,
-                &format!("{}.mat", self.name),
-                &self.mat(|run| v5("a run simulated by qcar", run)),
-            ),
-            Kind::Mat73 => put(folder, &format!("{}.mat", self.name), &self.mat(v73)),
-            Kind::Mdf => put(folder, &format!("{}.mf4", self.name), &self.mdf()),
+            Kind::Csv => put(folder, &file, &self.csv()),
+            Kind::Mat => put(folder, &file, &self.mat(|run| v5("a run simulated by qcar", run))),
+            Kind::Mat73 => put(folder, &file, &self.mat(v73)),
+            Kind::Mdf => put(folder, &file, &self.mdf()),
         }
     }
 

@@ -29,6 +29,8 @@ pub mod stopping;
 pub mod progress;
 // Handling of Ctrl-C.
 pub mod interruption;
+// Sensors of a campaign that a model lacks.
+mod sensors;
 // Parameter values from files and flags.
 pub mod parameters;
 // Parameter sets for which a mass is zero or negative.

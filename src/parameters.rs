@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use qcar_runtime::campaign::{self, Campaign, Declared, FACTS, dimension, examples};
+use qcar_runtime::campaign::{self, Campaign, Declared, FACTS, examples};
 use qcar_runtime::ensemble::Posterior;
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::model::{self, About, Default};
@@ -18,6 +18,7 @@ use qcar_runtime::roles::{RoleError, Roles};
 use qcar_runtime::spelling;
 
 use crate::failure;
+use crate::sensors;
 use crate::units;
 use file::{ParameterFile, numbers};
 use fitted::Answer;
@@ -28,7 +29,7 @@ pub struct Setting {
     name: String,
     /// Value, SI.
     value: f64,
-    /// SI unit of the declared unit.
+    /// The unit as written, if it has one.
     unit: Option<String>,
 }
 
@@ -49,7 +50,7 @@ impl FromStr for Setting {
     fn from_str(text: &str) -> Result<Self, String> {
         let (name, value) = text.split_once('=').ok_or("expected name=value, such as k_tm=6e5")?;
         let number = value.trim().parse::<f64>().ok().filter(|v| v.is_finite());
-        let quantity = || Declared::quantity(value).map(|(value, unit)| (value, Some(unit.coherent)));
+        let quantity = || Declared::quantity(value).map(|(value, unit)| (value, Some(unit.written)));
         let (value, unit) = number.map(|value| (value, None)).or_else(quantity).ok_or_else(|| {
             format!("expected a number after `=`, and perhaps its unit such as N/mm, found `{value}`")
         })?;
@@ -76,24 +77,55 @@ pub fn resolve<'a>(
 }
 
 fn resolved(about: &About, file: ParameterFile, settings: &[Setting]) -> Result<Values, InputError> {
-    let mut given = numbers(&file.parameters);
-    given.extend(settings.iter().map(|setting| (setting.name.clone(), setting.value)));
-    let mut problems = wrong_units(about, &file);
-    problems.extend(wrong_settings(about, settings));
-    problems.extend(unknown_facts(about, &file));
-    let resolved = Values::resolve(about, &given, &numbers(&file.vehicle));
+    let mut problems = misused(about, &file, settings);
+    let resolved = Values::resolve(about, &with(&file, settings), &numbers(&file.vehicle));
     let values = resolved.map_err(|errors| problems.extend(errors.iter().map(|error| problem(error, &file))));
     InputError::unless_empty(problems, values.ok())
 }
 
-/// Checks that the vehicle data of a campaign are used, and that its roles name masses of the model.
+/// The values that a file and settings give parameters of a model, and the vehicle data of the file.
 ///
 /// # Errors
-/// Fails with every key of its `[vehicle]` that is neither one of [`FACTS`] nor a parameter of the model, and with a
-/// name in its `[roles]` that is no mass on the axis of the tyre.
+/// Fails as [`resolve`] does, but parameters may have no value.
+pub fn stated(about: &About, path: Option<&Path>, settings: &[Setting]) -> Result<BTreeMap<String, f64>, InputError> {
+    let file = overlaid(path)?;
+    let mut problems = misused(about, &file, settings);
+    let (vehicle, given) = (numbers(&file.vehicle), with(&file, settings));
+    let errors = Values::resolve(about, &given, &vehicle).err().unwrap_or_default();
+    let wrong = errors
+        .iter()
+        .filter(|error| !matches!(error, ParameterError::Missing { .. }));
+    problems.extend(wrong.map(|error| problem(error, &file)));
+    InputError::unless_empty(problems, Some(vehicle.into_iter().chain(given).collect()))
+}
+
+/// The values of parameters in a file, and those of settings, which take precedence.
+fn with(file: &ParameterFile, settings: &[Setting]) -> BTreeMap<String, f64> {
+    let mut given = numbers(&file.parameters);
+    given.extend(settings.iter().map(|setting| (setting.name.clone(), setting.value)));
+    given
+}
+
+/// Problems besides names that the model lacks: units of another kind, settings that contradict each other, and unknown
+/// vehicle data.
+fn misused(about: &About, file: &ParameterFile, settings: &[Setting]) -> Vec<Problem> {
+    let mut problems = wrong_units(about, file);
+    problems.extend(wrong_settings(about, settings));
+    problems.extend(set_twice(settings));
+    problems.extend(unknown_facts(about, file));
+    problems
+}
+
+/// Checks that the vehicle data of a campaign are used, that its roles name masses of the model, and that its sensors
+/// have the units of the model.
+///
+/// # Errors
+/// Fails with every key of its `[vehicle]` that is neither one of [`FACTS`] nor a parameter of the model, with a name in
+/// its `[roles]` that is no mass on the axis of the tyre, and with a sensor whose unit is of another kind.
 pub fn check_campaign(about: &About, campaign: &Campaign) -> Result<(), InputError> {
     let file = ParameterFile::read(&campaign.manifest())?;
     let mut problems = unknown_facts(about, &file);
+    problems.extend(sensors::of_other_units(about, campaign));
     if let Err(RoleError::NoSuchMass { name, axis, masses, .. }) = Roles::of(about, &campaign.roles) {
         let (place, found) = (Place::Name("roles".into()), format!("`{name}`"));
         let expected = format!("a mass of model `{}` along {axis}", about.name);
@@ -203,6 +235,24 @@ pub fn out_of_range(about: &About, p: &[f64]) -> Vec<String> {
     beyond.collect()
 }
 
+/// Checks that settings are in the ranges of the model, for results that outlive the command.
+///
+/// # Errors
+/// Fails with every setting outside.
+pub fn require_in_range(about: &About, settings: &[Setting]) -> Result<(), InputError> {
+    let outside = settings.iter().filter_map(|own| {
+        let parameter = about.parameters.iter().find(|parameter| *parameter.name == own.name)?;
+        let (low, high) = parameter
+            .range
+            .filter(|(low, high)| !(*low..=*high).contains(&own.value))?;
+        let (name, unit) = (format!("--set {}", own.name), &parameter.unit);
+        let expected = format!("a value from {low} to {high} {unit}, for which the model is declared");
+        let remedy = "correct the value or its unit, or change `range` in the model";
+        Some(failure::flag(&name, format!("{} {unit}", own.value), &expected, remedy))
+    });
+    InputError::unless_empty(outside.collect(), Some(()))
+}
+
 /// Parameters of the model that are estimated although the campaign does not mention them: those with a default and a
 /// range that are not `known`.
 pub fn own(about: &About, campaign: &Campaign) -> Vec<campaign::Parameter> {
@@ -271,18 +321,14 @@ pub fn require_finite<'a>(model: &str, mut computed: impl Iterator<Item = &'a f6
     }
 }
 
-/// The values of files and settings, for any model.
+/// The values of a file, for any model.
 ///
 /// # Errors
-/// Fails if a file cannot be read.
-pub fn given(path: Option<&Path>, settings: &[Setting]) -> Result<BTreeMap<String, f64>, InputError> {
-    let mut values = BTreeMap::new();
-    if let Some(path) = path {
-        let file = read(path)?;
-        values.extend(numbers(&file.vehicle));
-        values.extend(numbers(&file.parameters));
-    }
-    values.extend(settings.iter().map(|setting| (setting.name.clone(), setting.value)));
+/// Fails if the file cannot be read.
+pub fn given(path: &Path) -> Result<BTreeMap<String, f64>, InputError> {
+    let file = read(path)?;
+    let mut values = numbers(&file.vehicle);
+    values.extend(numbers(&file.parameters));
     Ok(values)
 }
 
@@ -326,7 +372,7 @@ fn wrong_units(about: &About, file: &ParameterFile) -> Vec<Problem> {
             .find_map(|own| own.get(&*parameter.name))?;
         Some((parameter, stated, stated.unit.as_ref()?))
     });
-    let wrong = declared.filter(|(parameter, _, unit)| dimension(unit) != dimension(&parameter.unit));
+    let wrong = declared.filter(|(parameter, _, unit)| !is_like(unit, &parameter.unit));
     wrong
         .map(|(parameter, stated, unit)| {
             let (found, expected) = (format!("the unit \"{unit}\""), examples(&parameter.unit));
@@ -336,20 +382,39 @@ fn wrong_units(about: &About, file: &ParameterFile) -> Vec<Problem> {
         .collect()
 }
 
+/// True if a unit as written is of the kind of another.
+fn is_like(written: &str, unit: &str) -> bool {
+    Declared::of(written).is_some_and(|own| own.is_like(unit))
+}
+
 fn wrong_settings(about: &About, settings: &[Setting]) -> Vec<Problem> {
     let declared = settings.iter().filter_map(|own| {
         let parameter = about.parameters.iter().find(|parameter| *parameter.name == own.name)?;
         Some((parameter, own, own.unit.as_ref()?))
     });
-    let wrong = declared.filter(|(parameter, _, unit)| dimension(unit) != dimension(&parameter.unit));
+    let wrong = declared.filter(|(parameter, _, unit)| !is_like(unit, &parameter.unit));
     wrong
         .map(|(parameter, own, unit)| {
-            let (name, found) = (
-                format!("--set {}", own.name),
-                format!("a value in \"{unit}\" or a multiple of it"),
-            );
+            let (name, found) = (format!("--set {}", own.name), format!("a value in \"{unit}\""));
             let remedy = "correct the unit, or leave it out for a value in SI";
             failure::flag(&name, found, &examples(&parameter.unit), remedy)
+        })
+        .collect()
+}
+
+/// Settings of a name that an earlier one has.
+fn set_twice(settings: &[Setting]) -> Vec<Problem> {
+    let is_second = |(at, own): &(usize, &Setting)| settings[..*at].iter().any(|other| other.name == own.name);
+    let twice = settings.iter().enumerate().filter(is_second);
+    twice
+        .map(|(_, own)| {
+            let name = format!("--set {}", own.name);
+            failure::flag(
+                &name,
+                "a second value",
+                "one value for each name",
+                "leave one of them out",
+            )
         })
         .collect()
 }

@@ -164,7 +164,7 @@ pub fn discover_in_campaign(py: Python<'_>, campaign: PathBuf, model: Option<Str
 #[pyfunction]
 pub fn read_values(path: PathBuf) -> PyResult<(BTreeMap<String, f64>, BTreeMap<String, f64>)> {
     let read = |path: &Path| -> Result<_, Failure> {
-        let (beside, all) = (FileExtras::read(path)?, parameters::given(Some(path), &[])?);
+        let (beside, all) = (FileExtras::read(path)?, parameters::given(path)?);
         Ok((all, beside.vehicle))
     };
     read(&path).map_err(errors::of_campaign)

@@ -48,6 +48,8 @@ impl Layout {
         let body = &head[first..];
         let body = &body[..body.iter().position(|row| !is_data(row)).unwrap_or(body.len())];
         let width = body.iter().map(|row| filled_width(row)).max()?;
+        let spoilt = head[..first].iter().rev().take_while(|row| is_begun(row, width));
+        let first = first - spoilt.count();
         let headings = Headings::above(&head[..first], width);
         let columns = (0..width).filter_map(|index| headings.column(index, body));
         Some(Layout {
@@ -120,6 +122,13 @@ fn texts(row: &[Cell]) -> usize {
 
 fn is_data(row: &[Cell]) -> bool {
     numbers(row) > 0 && texts(row) == 0
+}
+
+/// True for a row directly above the numbers that is itself one of them, with a cell that cannot be read, such as `OVLD`
+/// in the first sample. It must be reported, and not become the names of the columns.
+fn is_begun(row: &[Cell], width: usize) -> bool {
+    let begins = matches!(row.first(), Some(Cell::Number(_) | Cell::Stamp(_)));
+    begins && filled_width(row) == width && (texts(row) == 0 || !are_units(row))
 }
 
 fn filled_width(row: &[Cell]) -> usize {

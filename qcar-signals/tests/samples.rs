@@ -482,6 +482,12 @@ fn a_cell_that_is_no_number_is_named() {
             "t;a\n0;1,5\n1;2.5\n",
             vec!["`1,5`", "`2.5`", "line 3", "same decimal sign"],
         ),
+        ("t,a\n0,OVLD\n1,2.5\n2,3\n", vec!["line 2, column `a`", "`OVLD`"]),
+        (
+            "t,a\ns,g\n0,1.5\n1,OVLD\n2,3\n3,1\n",
+            vec!["line 4, column `a`", "`OVLD`"],
+        ),
+        ("t,a\n0,OVLD\n1,OVLD\n2,3\n3,1\n", vec!["line 2, column `a`", "`OVLD`"]),
         ("nothing\nto see\n", vec!["no row of numbers"]),
         (
             "t,a\n0,\"1.5\n1,2.5\n",
@@ -492,6 +498,18 @@ fn a_cell_that_is_no_number_is_named() {
     for (table, parts) in cases {
         says(&recognise(table.as_bytes()).unwrap_err().to_string(), &parts);
     }
+}
+
+/// A unit may be a number, and lines above a table may begin with one.
+#[test]
+fn numbers_above_a_table_are_no_samples() {
+    let names = |table: &str| -> Vec<(String, String)> {
+        let signals = recognise(table.as_bytes()).unwrap().signals;
+        signals.into_iter().map(|own| (own.name, own.unit)).collect()
+    };
+    let named = [("n", "1"), ("a", "g"), ("b", "mm")].map(|(name, unit)| (name.to_string(), unit.to_string()));
+    assert_eq!(names("n,a,b\n1,g,mm\n0,1.5,2\n1,2.5,3\n"), named);
+    assert_eq!(names("3,runs\n0,1.5,2\n1,2.5,3\n").len(), 3);
 }
 
 /// A file of the latest version of HDF5, made by h5py with these formulas: in one piece, and in chunks with each kind

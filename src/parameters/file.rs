@@ -51,7 +51,7 @@ pub struct ParameterFile {
 pub struct Stated {
     /// A finite number, SI.
     pub value: f64,
-    /// The coherent SI unit of the declared unit; `None` without a unit.
+    /// The unit as written; `None` without one.
     pub unit: Option<String>,
     /// Standard error, if the file has it.
     pub stderr: Option<f64>,
@@ -93,6 +93,7 @@ impl ParameterFile {
             parameters,
             vehicle,
         } = reader.tables();
+        reader.refuse_contradictions(&parameters, &vehicle);
         let Reader { problems, .. } = reader;
         InputError::unless_empty(problems, Some(()))?;
         let mut file = match workbook {
@@ -216,6 +217,19 @@ impl Reader<'_> {
         }
     }
 
+    /// Refuses a parameter with one value below `[vehicle]` and another below `[parameters]`.
+    fn refuse_contradictions(&mut self, parameters: &Table, vehicle: &Table) {
+        for (name, own) in parameters {
+            let Some(known) = vehicle.get(name).filter(|known| known.value != own.value) else {
+                continue;
+            };
+            let found = format!("{} here and {} at [vehicle], both in SI", own.value, known.value);
+            let remedy = "leave out one of them: [vehicle] is for known values, [parameters] for start values";
+            let problem = Problem::new(self.path, own.place.clone(), found, "one value", remedy);
+            self.problems.push(problem);
+        }
+    }
+
     fn section(&mut self, section: &str, value: &Spanned<DeValue>) -> Table {
         let Some(entries) = value.get_ref().as_table() else {
             let remedy = format!("write [{section}] on a line and the values below it");
@@ -305,7 +319,7 @@ impl Reader<'_> {
                 "correct the value or its unit",
             );
         }
-        quantity.map(|(value, unit)| (value, Some(unit.coherent)))
+        quantity.map(|(value, unit)| (value, Some(unit.written)))
     }
 
     /// The value of a number in its declared unit, in SI.
@@ -324,7 +338,7 @@ impl Reader<'_> {
             );
             return None;
         };
-        Some((declared.si(value), Some(declared.coherent)))
+        Some((declared.si(value), Some(declared.written)))
     }
 
     fn wrong(&mut self, offset: usize, key: &str, found: &str, expected: &str, remedy: &str) {

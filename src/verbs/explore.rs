@@ -129,6 +129,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     )?;
     let files = arguments.model.params.iter().chain(&arguments.posterior);
     let values = parameters::resolve(model.about(), files.map(PathBuf::as_path), &arguments.model.set)?;
+    parameters::require_in_range(model.about(), &arguments.model.set)?;
     model.check_inertias(values.as_slice())?;
     let design = design(arguments, model.about(), &values, drawn.map(|(posterior, _)| posterior))?;
     let possible = |p: &[f64]| model.check_inertias(p).err().map(|error| error.to_string());

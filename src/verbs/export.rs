@@ -13,7 +13,7 @@ use crate::catalogue::{self, Loaded};
 use crate::export::fmu::Library;
 use crate::export::{File, Subject, c, fmu, javascript, matlab};
 use crate::failure::{Failure, flag};
-use crate::files::put;
+use crate::files::{must_be_free, put};
 use crate::json;
 use crate::parameters;
 use crate::roads;
@@ -125,6 +125,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let ModelArguments { model, params, set } = &arguments.model;
     let (loaded, compiled) = catalogue::load_and_compile(model, arguments.kind.wants())?;
     let values = parameters::resolve(loaded.about(), params.as_deref(), set)?;
+    parameters::require_in_range(loaded.about(), set)?;
     loaded.check_inertias(values.as_slice())?;
     let subject = Subject {
         compiled: &compiled,
@@ -183,20 +184,6 @@ fn stem(out: &Path, extension: &str) -> Result<String, Failure> {
             Err(flag("--out", found, &expected, &remedy).into())
         }
     }
-}
-
-fn must_be_free(path: &Path) -> Result<(), Failure> {
-    if !path.exists() {
-        return Ok(());
-    }
-    let found = format!("{}, which exists already", path.display());
-    Err(flag(
-        "--out",
-        found,
-        "a name that is not in use",
-        "choose another name, or move the file away",
-    )
-    .into())
 }
 
 /// The files to write, and a message on them.

@@ -405,6 +405,16 @@ fn plan(campaign: &Campaign, about: &About, choices: &Choices) -> Result<Plan, I
             }
         }
     }
+    let both = choices.free.iter().filter(|name| choices.fix.contains(name));
+    problems.extend(both.map(|name| {
+        let remedy = "leave one of them out";
+        flag(
+            "--free",
+            format!("`{name}`, which --fix names too"),
+            "a parameter in one of them",
+            remedy,
+        )
+    }));
     InputError::unless_empty(problems, Some(()))?;
     bound(&mut plan.parameters, about, campaign)?;
     Ok(plan)

@@ -11,14 +11,14 @@ use crate::catalogue;
 use crate::completion;
 use crate::effects;
 use crate::failure::Failure;
-use crate::files::put;
+use crate::files::{must_be_free, put};
 use crate::parameters;
 
 /// Add an effect to a model and write the new model file
 ///
 /// The new file contains the whole model, with its options resolved, and compiles like any other. Ranges and start
 /// values that depend on the model's own parameters are evaluated at the given values, at the defaults, or else in the
-/// middle of the ranges.
+/// middle of the ranges. An existing file is never overwritten.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar patch axle_c coulomb_friction --at damper\n  qcar patch axle_a bushing_relaxation --at top_mount --params models/campaigns/axle_a_rig --out softer.axle"
@@ -45,8 +45,10 @@ const NO_EVIDENCE: &str = "Evidence: none yet.";
 
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
-    let compiled = catalogue::compiled_wanted(&arguments.model.model, Wanted::Nothing)?;
-    let values = parameters::given(arguments.model.params.as_deref(), &arguments.model.set)?;
+    arguments.out.as_deref().map_or(Ok(()), must_be_free)?;
+    let ModelArguments { model, params, set } = &arguments.model;
+    let compiled = catalogue::compiled_wanted(model, Wanted::Nothing)?;
+    let values = parameters::stated(&compiled.about, params.as_deref(), set)?;
     let patched = effects::find(&arguments.effect, arguments.form.as_deref())?
         .apply(&compiled.model, &arguments.at, &|name| values.get(name).copied())
         .map_err(|report| Failure::Input(report.to_string()))?;

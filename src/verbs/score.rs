@@ -4,12 +4,15 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use qcar_runtime::campaign::Truth;
+use qcar_dsl::response::Wanted;
+use qcar_runtime::campaign::{Campaign, Truth};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::fit::report::{ChannelFit, ParameterFit};
 
+use crate::catalogue;
 use crate::failure::Failure;
 use crate::interruption::keep;
+use crate::parameters;
 use crate::table::{Table, number, or_dash};
 use crate::terminal::prose;
 use crate::units;
@@ -37,7 +40,9 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let mut reports = String::new();
     let mut all_well = true;
     for folder in campaigns(&arguments.folders)? {
-        let truth = Truth::read(&folder.join("truth.toml"))?;
+        let answer = folder.join("truth.toml");
+        let truth = Truth::read(&answer)?;
+        refuse_unknown(&folder, &answer)?;
         let fitted = fit::fit(&folder, &Choices::default())?;
         let (text, well) = compare(&fitted, &truth, arguments.within);
         let text = if reports.is_empty() { text } else { format!("\n{text}") };
@@ -51,6 +56,14 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     } else {
         Err(Failure::Finding(text))
     }
+}
+
+/// Checks that the model of a campaign has every parameter in the file of its true values: a misspelt one would be
+/// compared with nothing.
+fn refuse_unknown(campaign: &Path, truth: &Path) -> Result<(), Failure> {
+    let model = catalogue::of_campaign(&Campaign::open(campaign)?, None, Wanted::Nothing)?;
+    parameters::stated(model.about(), Some(truth), &[])?;
+    Ok(())
 }
 
 /// The folders with a truth.toml: the given ones, or their subfolders in alphabetical order.

@@ -1,5 +1,6 @@
 //! `qcar sensitivity`: how metrics of an axle depend on parameters, and how uncertain they are.
 
+use std::collections::HashSet;
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -237,9 +238,26 @@ fn list(ground: &Ground<'_>) -> String {
     table.text()
 }
 
+/// A problem for each parameter that a flag names twice.
+fn named_twice(arguments: &Arguments) -> Vec<Problem> {
+    let tolerances = arguments.tolerance.iter().map(|own| ("--tolerance", &*own.name));
+    let per_kelvin = arguments.per_kelvin.iter().map(|own| ("--per-kelvin", &*own.name));
+    let mut seen = HashSet::new();
+    let twice = tolerances.chain(per_kelvin).filter(|own| !seen.insert(*own));
+    let problem = |(option, name)| {
+        flag(
+            option,
+            format!("`{name}` twice"),
+            "each parameter once",
+            "leave one of them out",
+        )
+    };
+    twice.map(problem).collect()
+}
+
 /// The choices of the user.
 fn sources(subject: &Subject, parameters: &[usize], arguments: &Arguments) -> Result<UncertaintySources, InputError> {
-    let mut problems = Vec::new();
+    let mut problems = named_twice(arguments);
     let mut place = |name: &str, option: &'static str| {
         let problem = |found: &str, expected: &str, remedy: &str| flag(option, found, expected, remedy);
         match selection::parameter(subject.model.about(), &subject.values, name, problem) {

@@ -22,6 +22,8 @@ use crate::roads;
 use crate::terminal::prose;
 use crate::verbs::TableFormat;
 
+// Names of the files.
+pub(crate) mod names;
 // Simulated and measured cleat runs compared.
 pub(crate) mod comparison;
 // Sweeps and time histories, replayed.
@@ -36,6 +38,7 @@ mod spectra;
 mod ground;
 
 use comparison::Compared;
+use names::{FileNames, spare_records};
 use qcar_dsl::response::Wanted;
 use records::Record;
 
@@ -61,7 +64,7 @@ pub struct Arguments {
     /// duration, `:20s`
     #[arg(long, value_name = "ROAD@SPEED")]
     road: Vec<roads::RequestedRoad>,
-    /// Write the time histories into this folder, a file for each run. For a sweep or time history it has the measured
+    /// Write the time histories into this folder, a file for each run, which replaces no file of the campaign. For a sweep or time history it has the measured
     /// and the simulated signals, with an SVG; for a road there are power spectral densities too, as CSV and SVG
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
@@ -107,12 +110,17 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     if !arguments.road.is_empty() {
         return over_roads(arguments);
     }
-    let simulated = simulate(&arguments.campaign, &arguments.choices)?;
+    let opened = open(&arguments.campaign, &arguments.choices)?;
     if let Some(folder) = &arguments.out {
-        for history in simulated.cleat_histories() {
-            history.put(folder, arguments.kind)?;
-        }
-        render::records(&simulated.records, folder, arguments.kind)?;
+        let names = FileNames::of(&opened.campaign);
+        let files = names
+            .all()
+            .flat_map(|name| [arguments.kind.file(name), render::figure_of(name)]);
+        spare_records(&opened.campaign, folder, files)?;
+    }
+    let simulated = simulated(opened, arguments.choices.variant)?;
+    if let Some(folder) = &arguments.out {
+        simulated.put(folder, arguments.kind)?;
     }
     Ok(match arguments.format {
         TableFormat::Text => prose(&simulated.result().text()),
@@ -129,7 +137,14 @@ fn over_roads(arguments: &Arguments) -> Result<String, Failure> {
         values,
     } = open(&arguments.campaign, &arguments.choices)?;
     let variant = arguments.choices.variant.into();
-    let rolled = ground::roll(&campaign, &model, &values, &arguments.road, variant)?;
+    let courses = roads::courses(&arguments.road, &[])?;
+    if let Some(folder) = &arguments.out {
+        let files = courses
+            .iter()
+            .flat_map(|course| ground::files(&course.name, arguments.kind));
+        spare_records(&campaign, folder, files)?;
+    }
+    let rolled = ground::roll(&campaign, &model, &values, &courses, variant)?;
     if let Some(folder) = &arguments.out {
         rolled.put(folder, arguments.kind)?;
     }
@@ -148,11 +163,13 @@ struct Opened {
 }
 
 fn open(campaign: &Path, choices: &Choices) -> Result<Opened, Failure> {
-    let campaign = Campaign::open(campaign)?;
+    let mut campaign = Campaign::open(campaign)?;
     let model = catalogue::of_campaign(&campaign, choices.model.as_deref(), Wanted::Values)?;
     let manifest = campaign.manifest();
     let files = std::iter::once(manifest.as_path()).chain(choices.params.as_deref());
     let values = parameters::resolve(model.about(), files, &choices.set)?;
+    let outside = parameters::out_of_range(model.about(), values.as_slice());
+    campaign.notices.extend(outside);
     Ok(Opened {
         campaign,
         model,
@@ -174,13 +191,18 @@ pub struct Simulated {
 /// # Errors
 /// Fails if the campaign has no such run, or if a run cannot be read or simulated.
 pub fn simulate(campaign: &Path, choices: &Choices) -> Result<Simulated, Failure> {
+    simulated(open(campaign, choices)?, choices.variant)
+}
+
+fn simulated(opened: Opened, variant: VariantName) -> Result<Simulated, Failure> {
     let Opened {
-        campaign,
+        mut campaign,
         model,
         values,
-    } = open(campaign, choices)?;
-    let cleats = over_cleats(&campaign, &model, &values, choices.variant.into())?;
-    let records = records::records(&campaign, &*model, &values)?;
+    } = opened;
+    let cleats = over_cleats(&campaign, &model, &values, variant.into())?;
+    let (records, left_out) = records::records(&campaign, &*model, &values)?;
+    campaign.notices.extend(left_out);
     if cleats.is_none() && records.is_empty() {
         let expected = "at least one run of kind cleat, sweep or time_history";
         return Err(nothing_to_simulate(&campaign, expected).into());
@@ -202,15 +224,24 @@ impl Simulated {
 
     /// Signals of each run: all outputs and the tyre force of a cleat run; measured and simulated signals of others.
     pub fn histories(&self) -> Vec<History> {
-        let records = self.records.iter().map(render::beside);
-        self.cleat_histories().into_iter().chain(records).collect()
+        let names = FileNames::of(&self.campaign);
+        let driven = self.cleats.as_ref();
+        let mut histories = driven.map_or_else(Vec::new, |(cleats, driven)| {
+            render::histories(self.model.about(), &names, cleats, &driven.rides)
+        });
+        let records = self.records.iter();
+        histories.extend(records.map(|record| render::beside(record, names.get(&record.run))));
+        histories
     }
 
-    fn cleat_histories(&self) -> Vec<History> {
-        let driven = self.cleats.as_ref();
-        driven.map_or_else(Vec::new, |(cleats, driven)| {
-            render::histories(self.model.about(), cleats, &driven.rides)
-        })
+    /// Writes the time histories, and the figure of each sweep and time history.
+    fn put(&self, folder: &Path, kind: Kind) -> Result<(), InputError> {
+        self.histories()
+            .iter()
+            .try_for_each(|history| history.put(folder, kind))?;
+        let names = FileNames::of(&self.campaign);
+        let mut records = self.records.iter();
+        records.try_for_each(|record| render::put_figure(record, names.get(&record.run), folder))
     }
 
     fn result(&self) -> render::Result<'_> {

@@ -37,7 +37,7 @@ fn parameter_files_are_read_with_care() {
     params("[parameters]\nk_tire = inf\n", &["line 2", "a number"]);
     params(
         "[parameters.k_tire]\nvalue = 200\nunit = \"N s/mm\"\n",
-        &["line 1", "the unit \"N s/m\"", "of the kind of N/m, such as \"N/mm\""],
+        &["line 1", "the unit \"N s/mm\"", "of the kind of N/m, such as \"N/mm\""],
     );
     params("[parameters.k_tire]\nunit = \"N/m\"\n", &["no `value`"]);
     params(
@@ -46,6 +46,18 @@ fn parameter_files_are_read_with_care() {
     );
     params("parameters = 3\n", &["a table"]);
     params("[paramters]\nk_tire = 2e5\n", &["`paramters`", "[parameters]"]);
+    params(
+        "[parameters]\nk_tire = \"200 kN\"\n",
+        &["line 2", "the unit \"kN\"", "of the kind of N/m"],
+    );
+    params(
+        "[parameters]\nk_tire = 2e5\n[vehicle]\nk_tire = 3e5\n",
+        &[
+            "line 2, column 1, `parameters.k_tire`",
+            "200000 here and 300000 at [vehicle]",
+            "leave out one of them",
+        ],
+    );
 }
 
 #[test]
@@ -69,6 +81,120 @@ fn flags_are_read_with_care() {
     frf(&["--frequencies", "0:30:300"], &["above 0 Hz"]);
     frf(&["--frequencies", "1:30"], &["FROM:TO:LINES"]);
     frf(&["--channels", "pad_to_moon"], &["`pad_to_moon`", "`pad_to_body`"]);
+}
+
+/// The last of two flags does not quietly take precedence.
+#[test]
+fn flags_that_contradict_each_other_are_refused() {
+    let axle = "models/campaigns/axle_a_rig";
+    let both = ["fit", axle, "--free", "k_tire", "--fix", "c_tm,k_tire"];
+    refused("", &both, &["--free", "`k_tire`, which --fix names too"]);
+    let set = ["matrices", "quarter_car", "--set", "k_tire=2e5", "--set", "k_tire=3e5"];
+    refused("", &set, &["--set k_tire", "a second value", "leave one of them out"]);
+    let tolerance = ["sensitivity", "axle_a", "--campaign", axle, "--metrics", "body_x.peak"];
+    let twice = ["--tolerance", "k_tire=5%", "--tolerance", "k_tire=6%"];
+    refused(
+        "",
+        &[&tolerance[..], &twice].concat(),
+        &["--tolerance", "`k_tire` twice"],
+    );
+    let explored = [
+        "explore",
+        "axle_a",
+        "--params",
+        axle,
+        "--vary",
+        "k_tire=-1%..1%",
+        "--count",
+        "2",
+        "--metrics",
+        "peak",
+    ];
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("sets.csv");
+    let rides = ["--rides", "20mm@30km/h,20 mm@30km/h", "--out", out.to_str().unwrap()];
+    refused("", &[&explored[..], &rides].concat(), &["--rides", "a ride twice"]);
+    assert!(!out.exists());
+}
+
+/// A stiffness in N/mm without its unit.
+#[test]
+fn values_outside_the_ranges_of_the_model_are_not_passed_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = |name: &str| folder.path().join(name).to_str().unwrap().to_string();
+    let said = [
+        "--set k_tire",
+        "found 220 N/m, expected a value from 50000 to 1000000 N/m, for which the model is declared",
+        "correct the value or its unit",
+    ];
+    let code = out("model.c");
+    refused(
+        "",
+        &[
+            "export",
+            "quarter_car",
+            "--set",
+            "k_tire=220",
+            "--as",
+            "c",
+            "--out",
+            &code,
+        ],
+        &said,
+    );
+    let sets = out("sets.csv");
+    let explored = [
+        "explore",
+        "quarter_car",
+        "--set",
+        "k_tire=220",
+        "--vary",
+        "m_wheel=-1%..1%",
+        "--count",
+        "2",
+    ];
+    refused(
+        "",
+        &[&explored[..], &["--metrics", "modes", "--out", &sets]].concat(),
+        &said,
+    );
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    // A replay says so beside its result.
+    let ran = qcar(&[
+        "simulate",
+        "models/campaigns/emps",
+        "--set",
+        "m_body=1e7",
+        "--format",
+        "json",
+    ]);
+    assert!(
+        ran.stdout.contains("the plausible range of model"),
+        "{}{}",
+        ran.stdout,
+        ran.stderr
+    );
+}
+
+#[test]
+fn values_for_a_patch_have_names_of_its_model() {
+    let patch = ["patch", "axle_c", "digressive_damper", "--at", "damper"];
+    let set = ["--set", "c_whel_z=2000"];
+    refused(
+        "",
+        &[&patch[..], &set].concat(),
+        &["--set c_whel_z", "did you mean `c_wheel_z`?"],
+    );
+    let params = ["--params", "FILE"];
+    let said = ["line 2", "parameters.c_whel_z", "did you mean `c_wheel_z`?"];
+    refused("[parameters]\nc_whel_z = 2e3\n", &[&patch[..], &params].concat(), &said);
+}
+
+#[test]
+fn what_is_wrong_in_every_run_is_said_once() {
+    let ran = qcar(&["fit", "models/campaigns/axle_a_rig", "--channels", "pad_to_whel"]);
+    common::refused(&ran, &["`pad_to_whel`", "not measured"]);
+    assert_eq!(ran.stderr.matches("pad_to_whel").count(), 1, "{}", ran.stderr);
 }
 
 /// Before the work, whose result nobody would see.
@@ -159,6 +285,25 @@ fn damaged(change: impl Fn(usize, Vec<&str>) -> String) -> tempfile::TempDir {
     let kept: Vec<String> = changed.into_iter().filter(|line| !line.is_empty()).collect();
     fs::write(folder.path().join("sweep.csv"), kept.join("\n")).unwrap();
     folder
+}
+
+/// Old line ends would make one line of the table, with a name for each cell.
+#[test]
+fn a_table_of_many_wrong_columns_is_told_in_a_few_lines() {
+    let unchanged = damaged(|_, cells| cells.join(","));
+    let (file, path) = (unchanged.path().join("sweep.csv"), unchanged.path().to_str().unwrap());
+    fs::write(&file, fs::read_to_string(&file).unwrap().replace('\n', "\r")).unwrap();
+    let ran = qcar(&["check", path]);
+    common::refused(
+        &ran,
+        &["sweep.csv, line 1", "carriage return", "line ends of Windows or Unix"],
+    );
+    assert_eq!(ran.stderr.lines().count(), 1, "{}", ran.stderr);
+    let more: String = (0..200).map(|number| format!(",x_{number}")).collect();
+    let wide = damaged(|line, cells| cells.join(",") + if line == 0 { &more } else { "" });
+    let ran = qcar(&["check", wide.path().to_str().unwrap()]);
+    common::refused(&ran, &["column `x_0`", "further columns of these are wrong too"]);
+    assert!(ran.stderr.lines().count() < 30, "{}", ran.stderr);
 }
 
 /// Multiplies a column of a table.

@@ -198,11 +198,13 @@ fn covers((parameters, damper): (&str, &str), effect: Option<&str>, laws: &Laws,
     let [plain, model] = ["plain.axle", "model.axle"].map(|name| folder.path().join(name));
     let text = CAR.replace("PARAMETERS", parameters).replace("DAMPER", damper);
     fs::write(&plain, &text).unwrap();
-    fs::write(&model, &text).unwrap();
-    if let Some(effect) = effect {
-        let paths = [plain.to_str().unwrap(), model.to_str().unwrap()];
-        let line: Vec<&str> = effect.split(' ').collect();
-        succeeds(&[&["patch", paths[0]], &line[..], &["--out", paths[1]]].concat());
+    match effect {
+        None => fs::write(&model, &text).unwrap(),
+        Some(effect) => {
+            let paths = [plain.to_str().unwrap(), model.to_str().unwrap()];
+            let line: Vec<&str> = effect.split(' ').collect();
+            succeeds(&[&["patch", paths[0]], &line[..], &["--out", paths[1]]].concat());
+        }
     }
     let records = LEVELS.map(|level| simulated(laws, level));
     let mut off = Vec::new();

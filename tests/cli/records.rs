@@ -77,7 +77,8 @@ fn push(t: f64) -> f64 {
     (7.0 * sample).sin() + (23.0 * sample).sin() + (41.0 * sample).cos()
 }
 
-fn pushed() -> Vec<(&'static str, Vec<f64>)> {
+/// A record of the pushed mass.
+pub fn pushed() -> Vec<(&'static str, Vec<f64>)> {
     let force = (0..SAMPLES).map(|k| push((k as f64 + 0.5) / RATE)).collect();
     vec![("push", force), ("z", mass([0.0, 0.0], push))]
 }

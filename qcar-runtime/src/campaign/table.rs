@@ -1,5 +1,6 @@
 //! A CSV file, plain or compressed by gzip, as named columns of finite numbers.
 
+use std::collections::HashSet;
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
@@ -126,6 +127,9 @@ pub(super) fn read(file: &Path) -> Result<Table, InputError> {
     Ok(table)
 }
 
+/// Problems of one file that are reported one by one, and names in a list.
+const MOST_PROBLEMS: usize = 20;
+
 /// Problems of the columns of a file, whose names must be `required` and may be `allowed`.
 pub(super) fn check_names(file: &Path, names: &[String], required: &[&str], allowed: &[&str]) -> Vec<Problem> {
     let mut problems = Vec::new();
@@ -140,9 +144,16 @@ pub(super) fn check_names(file: &Path, names: &[String], required: &[&str], allo
             remedy,
         ));
     }
-    for (at, name) in names.iter().enumerate() {
+    let mut seen = HashSet::new();
+    for name in names {
+        if problems.len() == MOST_PROBLEMS {
+            let (found, expected) = (format!("{} columns", names.len()), "the columns of the campaign alone");
+            let remedy = "further columns of these are wrong too: choose the right file, or export it again";
+            problems.push(Problem::new(file, Place::Line(1), found, expected, remedy));
+            break;
+        }
         let place = || Place::Cell(1, name.clone());
-        if names[..at].contains(name) {
+        if !seen.insert(name) {
             problems.push(Problem::new(
                 file,
                 place(),
@@ -167,11 +178,12 @@ pub(super) fn check_names(file: &Path, names: &[String], required: &[&str], allo
 }
 
 fn list<T: AsRef<str>>(names: &[T]) -> String {
-    names
-        .iter()
-        .map(|name| format!("`{}`", name.as_ref()))
-        .collect::<Vec<_>>()
-        .join(", ")
+    let first = names.iter().take(MOST_PROBLEMS);
+    let first: Vec<_> = first.map(|name| format!("`{}`", name.as_ref())).collect();
+    match names.len() - first.len() {
+        0 => first.join(", "),
+        more => format!("{} and {more} more", first.join(", ")),
+    }
 }
 
 fn open(file: &Path) -> Result<csv::Reader<Box<dyn Read>>, InputError> {
@@ -229,6 +241,14 @@ fn names(file: &Path, reader: &mut csv::Reader<Box<dyn Read>>) -> Result<Vec<Str
             remedy,
         )
         .into());
+    }
+    if cells(&record).any(|name| name.contains(&b'\r')) {
+        let (found, expected) = (
+            "lines that end with a carriage return alone",
+            "lines that end with a line feed",
+        );
+        let remedy = "save the file with the line ends of Windows or Unix";
+        return Err(Problem::new(file, Place::Line(1), found, expected, remedy).into());
     }
     cells(&record)
         .map(|name| text(file, || Place::Line(1), name))

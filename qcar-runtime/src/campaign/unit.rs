@@ -56,6 +56,8 @@ pub struct Declared {
     divide: f64,
     /// The coherent SI unit of the same kind.
     pub coherent: String,
+    /// As in the file.
+    pub written: String,
 }
 
 impl Declared {
@@ -68,6 +70,7 @@ impl Declared {
                 multiply: 1.0,
                 divide: 1.0,
                 coherent: unit.into(),
+                written: unit.into(),
             });
         }
         let si = in_si(unit)?;
@@ -75,6 +78,7 @@ impl Declared {
             multiply: si.multiply,
             divide: si.divide,
             coherent: coherent(si.dimension),
+            written: unit.into(),
         })
     }
 

@@ -36,7 +36,14 @@ pub fn levels(
         match result {
             Ok(Measured::Level(level)) => levels.push(level),
             Ok(Measured::FreeDecay(error)) => free.extend(error.problems),
-            Err(error) => problems.extend(error.problems),
+            // What is wrong with the request is wrong in every run.
+            Err(error) => problems.extend(
+                error
+                    .problems
+                    .into_iter()
+                    .filter(|new| !problems.contains(new))
+                    .collect::<Vec<_>>(),
+            ),
         }
     }
     if levels.is_empty() {

@@ -2,10 +2,15 @@
 
 use std::path::Path;
 
+use qcar_dsl::response::Wanted;
 use qcar_runtime::campaign::{Campaign, Role, Run, Test};
 use qcar_runtime::error::InputError;
+use qcar_runtime::simulate::tyre;
 
+use crate::catalogue::{self, Loaded};
 use crate::failure::Failure;
+use crate::parameters;
+use crate::sensors;
 use crate::suspect_unit::{Statistics, suspicion};
 use crate::table::{Table, number};
 
@@ -15,8 +20,11 @@ const DIGITS: usize = 6;
 /// True if every fit can use the samples, and the text on the campaign.
 pub(super) fn verdict(folder: &Path) -> Result<(bool, String), Failure> {
     let campaign = Campaign::open(folder)?;
+    let model = catalogue::of_campaign(&campaign, None, Wanted::Values)?;
+    check_values(&campaign, &model)?;
     let findings = campaign.findings()?;
     let mut sentences = campaign.notices.clone();
+    sentences.extend(sensors::unknown(model.about(), &campaign));
     for finding in &findings {
         let sentence = finding.to_string();
         // Flaws of measured files are already among the notices.
@@ -36,6 +44,17 @@ pub(super) fn verdict(folder: &Path) -> Result<(bool, String), Failure> {
         well,
         format!("{}: {verdict}\n{}{text}", folder.display(), runs(&campaign)?),
     ))
+}
+
+/// Checks the values of the campaign as the verbs that use them do.
+fn check_values(campaign: &Campaign, model: &Loaded) -> Result<(), InputError> {
+    let values = parameters::resolve(model.about(), [&*campaign.manifest()], &[])?;
+    model.check_inertias(values.as_slice())?;
+    let rolls = campaign.runs.iter().any(|run| matches!(run.test, Test::Cleat { .. }));
+    if rolls && campaign.vehicle("r_tire").is_some() {
+        tyre(campaign)?;
+    }
+    Ok(())
 }
 
 /// Sensors whose samples contradict their unit.

@@ -39,10 +39,14 @@ impl FromStr for RideName {
 /// The rides.
 ///
 /// # Errors
-/// Fails if a height makes no cleat.
+/// Fails if a height makes no cleat, or if a ride is named twice.
 pub(super) fn rides(wanted: &[RideName]) -> Result<Vec<Standard>, InputError> {
     let mut rides = Vec::new();
-    for own in wanted {
+    for (at, own) in wanted.iter().enumerate() {
+        if wanted[..at].contains(own) {
+            let remedy = "leave one of them out";
+            return Err(flag("--rides", "a ride twice", "each ride once", remedy).into());
+        }
         match own {
             RideName::Standard => rides.extend(Standard::all().expect("the standard cleats are roads")),
             RideName::Cleat(height, speed) => rides.push(Standard::over(*height, *speed).map_err(|error| {

@@ -108,7 +108,7 @@ pub(in crate::verbs) fn make_head(name: &str, model: &str, about: &About) -> Str
         .partition(|parameter| parameter.known);
     let mut out = format!(
         "# A campaign of measurements; docs/campaign-format.md describes it. A number without a unit is SI; paths are relative to this \
-         folder.\nformat = 1\nname = \"{name}\"\ndescription = \"\"\nmodel = \"{model}\"\n\n\
+         folder.\nformat = 1\nname = {name:?}\ndescription = \"\"\nmodel = {model:?}\n\n\
          # Values known before any fit.\n[vehicle]\n"
     );
     for parameter in known {
@@ -233,7 +233,8 @@ impl Sensor<'_> {
     }
 }
 
-/// One sensor on each side for every pad and every mass along the direction of the pads.
+/// One sensor on each side for every pad and every mass along the direction of the pads. An inertia that turns has none:
+/// an accelerometer measures no angle.
 fn sensors(about: &About) -> Vec<Sensor<'_>> {
     let roads = about.excitations.iter().filter(|excitation| excitation.road);
     let roads: Vec<(&str, &str)> = roads.map(|road| (&*road.name, &*road.axis)).collect();
@@ -241,7 +242,7 @@ fn sensors(about: &About) -> Vec<Sensor<'_>> {
     let masses = about
         .states
         .iter()
-        .filter(|state| state.kind == StateKind::Velocity && state.axis == axis);
+        .filter(|state| state.kind == StateKind::Velocity && state.axis == axis && state.unit == "m/s");
     let places = roads
         .iter()
         .copied()

@@ -60,7 +60,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<String, Failure> {
         None => corners()?,
     };
     let mut rows = rows(models.iter().map(|model| model.about()));
-    let given = parameters::given(arguments.params.as_deref(), &[])?;
+    let given = arguments
+        .params
+        .as_deref()
+        .map(parameters::given)
+        .transpose()?
+        .unwrap_or_default();
     rows.iter_mut()
         .for_each(|row| row.front = given.get(&row.name).copied());
     let bytes = workbook(file, arguments.model.as_deref(), &rows)?;

@@ -4,10 +4,12 @@ use std::collections::BTreeMap;
 
 use qcar_runtime::campaign::{Axis, Channel, Quantity, Role, RoleNames};
 use qcar_runtime::compare::{Alignment, CompareError, Errors, Summary, Windows};
+use qcar_runtime::discover::observe::nearest_place;
 use qcar_runtime::error::{InputError, Place, Problem};
-use qcar_runtime::model::{self, About, SignalKind};
+use qcar_runtime::model::{self, About, SignalKind, StateKind};
 use qcar_runtime::roles::Roles;
 use qcar_runtime::simulate::{Cleat, Ride};
+use qcar_runtime::transmissibility::Point;
 use serde::Serialize;
 
 /// All runs and their errors.
@@ -97,14 +99,30 @@ fn accelerometers(cleat: &Cleat) -> impl Iterator<Item = &(Channel, Vec<f64>)> {
 fn not_simulated(about: &About, cleat: &Cleat) -> Vec<String> {
     let unknown = accelerometers(cleat).filter(|(sensor, _)| output(about, sensor).is_none());
     let say = |(sensor, _): &(Channel, Vec<f64>)| {
-        let (mass, axis) = (&sensor.location, sensor.axis.name());
-        format!(
-            "`{mass}` along {axis} is measured but not compared, because its acceleration is not an output of model `{}`; add \
-             `output {mass}.acceleration;` to its direction {axis}",
-            about.name
-        )
+        let (mass, axis, model) = (&sensor.location, sensor.axis.name(), &about.name);
+        let left_out = format!("`{mass}` along {axis} is measured but not compared, because");
+        if moves(about, mass, axis) {
+            let output = format!("add `output {mass}.acceleration;` to its direction {axis}");
+            return format!("{left_out} its acceleration is not an output of model `{model}`; {output}");
+        }
+        let remedy = match nearest_place(about, &Point::new(mass, sensor.axis, sensor.quantity)) {
+            Some(nearest) => format!("did you mean `{nearest}`?"),
+            None => "name the location as the model does".into(),
+        };
+        format!("{left_out} model `{model}` has no `{mass}` along {axis}; {remedy}")
     };
     unknown.map(say).collect()
+}
+
+/// True for a mass, node or further point of a model.
+fn moves(about: &About, place: &str, axis: &str) -> bool {
+    let states = about.states.iter().filter(|state| state.kind != StateKind::Inner);
+    let outputs = about
+        .outputs
+        .iter()
+        .map(|output| (&output.signal.location, &output.signal.axis));
+    let mut all = states.map(|state| (&state.location, &state.axis)).chain(outputs);
+    all.any(|(location, own)| *location == *place && *own == *axis)
 }
 
 fn nothing_in_common(about: &About, cleat: &Cleat) -> Problem {

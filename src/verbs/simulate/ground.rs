@@ -19,7 +19,6 @@ use crate::catalogue::Loaded;
 use crate::files::put;
 use crate::histories::{History, Kind};
 use crate::json;
-use crate::roads::{RequestedRoad, courses};
 use crate::table::{Table, number};
 use crate::units;
 
@@ -91,17 +90,16 @@ struct Load {
 /// Rolls over each road, from equilibrium on level ground.
 ///
 /// # Errors
-/// Fails if a road cannot be read or a ride cannot be simulated.
+/// Fails if a ride cannot be simulated.
 pub(super) fn roll(
     campaign: &Campaign,
     model: &Loaded,
     values: &Values,
-    roads: &[RequestedRoad],
+    courses: &[Course],
     variant: Variant,
 ) -> Result<Rolled, InputError> {
     model.check_inertias(values.as_slice())?;
     let (tyre, load) = tyre(campaign)?;
-    let courses = courses(roads, &[])?;
     let drives: Vec<Drive<'_>> = courses.iter().map(Course::drive).collect();
     let ridden = simulate_rides(
         format!("{}: road", campaign.name),
@@ -125,6 +123,12 @@ pub(super) fn roll(
         rolled.add(model.about(), course, &ride, load);
     }
     Ok(rolled)
+}
+
+/// The files of a ride: its record, and its spectra as table and figure.
+pub(super) fn files(name: &str, kind: Kind) -> [String; 3] {
+    let spectra = |extension: &str| format!("{name}_spectra.{extension}");
+    [kind.file(name), spectra("csv"), spectra("svg")]
 }
 
 fn no_ride(campaign: &Campaign, course: &Course, error: &str) -> Problem {
@@ -176,9 +180,9 @@ impl Rolled {
         for (history, rate) in &self.histories {
             history.put(folder, kind)?;
             let spectra = Spectra::of(&history.channels, *rate);
-            let name = &history.name;
-            put(folder, &format!("{name}_spectra.csv"), &spectra.csv())?;
-            put(folder, &format!("{name}_spectra.svg"), &spectra.figure(name).svg())?;
+            let [_, table, figure] = files(&history.name, kind);
+            put(folder, &table, &spectra.csv())?;
+            put(folder, &figure, &spectra.figure(&history.name).svg())?;
         }
         Ok(())
     }

@@ -54,13 +54,18 @@ fn is_record(run: &Run) -> bool {
     matches!(run.test, Test::Sweep(_) | Test::TimeHistory(_))
 }
 
-/// Replays every sweep and time history of a campaign; empty without any.
+/// Replays every sweep and time history of a campaign; empty without any. Also says which recorded signals the model
+/// lacks.
 ///
 /// # Errors
 /// Fails if a run cannot be read or has no data for the model.
-pub(super) fn records(campaign: &Campaign, model: &dyn Model, values: &Values) -> Result<Vec<Record>, Failure> {
+pub(super) fn records(
+    campaign: &Campaign,
+    model: &dyn Model,
+    values: &Values,
+) -> Result<(Vec<Record>, Vec<String>), Failure> {
     if !campaign.runs.iter().any(is_record) {
-        return Ok(Vec::new());
+        return Ok((Vec::new(), Vec::new()));
     }
     let mut alike = campaign.clone();
     alike.runs.retain(is_record);
@@ -78,7 +83,7 @@ pub(super) fn records(campaign: &Campaign, model: &dyn Model, values: &Values) -
             simulated,
         )?);
     }
-    Ok(records)
+    Ok((records, evidence.notices))
 }
 
 /// The samples of each sensor of a run.

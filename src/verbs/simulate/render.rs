@@ -13,9 +13,10 @@ use serde::Serialize;
 use super::Cleat;
 use super::comparison::{Compared, Difference, Sizes};
 use super::figure;
+use super::names::FileNames;
 use super::records::{Record, RecordError};
 use crate::files::put;
-use crate::histories::{History, Kind};
+use crate::histories::History;
 use crate::json;
 use crate::table::{Table, noted, number};
 use crate::units;
@@ -246,21 +247,21 @@ pub(crate) fn csv(of: &Compared) -> String {
     head + &of.runs.iter().map(row).collect::<String>()
 }
 
-/// Writes a file of measured and simulated samples, and a figure, for each sweep or time history.
+/// The file of the figure of a run.
+pub(super) fn figure_of(name: &str) -> String {
+    format!("{name}.svg")
+}
+
+/// Writes the figure of a sweep or time history.
 ///
 /// # Errors
 /// Fails if the folder cannot be written to.
-pub(super) fn records(of: &[Record], folder: &Path, kind: Kind) -> std::result::Result<(), InputError> {
-    for record in of {
-        let history = beside(record);
-        history.put(folder, kind)?;
-        put(folder, &format!("{}.svg", history.name), &figure::record(record).svg())?;
-    }
-    Ok(())
+pub(super) fn put_figure(of: &Record, name: &str, folder: &Path) -> std::result::Result<(), InputError> {
+    put(folder, &figure_of(name), &figure::record(of).svg())
 }
 
-/// Measured and simulated samples as a table.
-pub(super) fn beside(record: &Record) -> History {
+/// Measured and simulated samples as a table of this name.
+pub(super) fn beside(record: &Record, name: &str) -> History {
     let samples = record.signals.first().map_or(0, |(_, [measured, _])| measured.len());
     let channels = record
         .signals
@@ -275,7 +276,7 @@ pub(super) fn beside(record: &Record) -> History {
             ["measured", "simulated"].into_iter().zip(signals).map(channel)
         });
     History {
-        name: stem(&record.run).into(),
+        name: name.into(),
         time: (0..samples)
             .map(|sample| record.start + sample as f64 / record.rate)
             .collect(),
@@ -283,19 +284,10 @@ pub(super) fn beside(record: &Record) -> History {
     }
 }
 
-/// Name of a file without folder and extensions.
-fn stem(file: &str) -> &str {
-    let name = Path::new(file)
-        .file_name()
-        .and_then(|name| name.to_str())
-        .unwrap_or("run");
-    name.trim_end_matches(".gz").trim_end_matches(".csv")
-}
-
 /// Writes time, outputs of the model, tyre forces and contact area of each run.
-pub(crate) fn histories(about: &About, cleats: &[Cleat], rides: &[Ride]) -> Vec<History> {
+pub(crate) fn histories(about: &About, names: &FileNames, cleats: &[Cleat], rides: &[Ride]) -> Vec<History> {
     let runs = cleats.iter().zip(rides);
-    runs.map(|(cleat, ride)| history(about, stem(&cleat.run.name), ride))
+    runs.map(|(cleat, ride)| history(about, names.get(&cleat.run.name), ride))
         .collect()
 }
 

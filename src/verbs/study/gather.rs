@@ -140,7 +140,8 @@ fn track(fitted: &Fitted, after: Option<&After>, out: &Path) -> Result<Option<Tr
     };
     let (about, driven) = (best.0.about(), track.after.as_ref().unwrap_or(&track.before));
     let folder = out.join("cleat");
-    for history in simulate::render::histories(about, &track.cleats, &driven.rides) {
+    let names = simulate::names::FileNames::of(campaign);
+    for history in simulate::render::histories(about, &names, &track.cleats, &driven.rides) {
         history.put(&folder, Kind::Csv)?;
     }
     put(&folder, "errors.csv", &simulate::render::csv(&driven.compared))?;

@@ -1,7 +1,7 @@
 //! The data set: series of measured values with their uncertainty.
 
 use super::run::Run;
-use super::sensor::is_known;
+use super::sensor::{is_known, nearest_place};
 use super::series::Series;
 use crate::campaign::Role;
 use crate::discover::numbers::Numbers;
@@ -45,11 +45,12 @@ impl Evidence {
     pub(super) fn keep_known(&mut self, about: &About, run: &str, points: Vec<Point>) -> Vec<Point> {
         let (known, unknown): (Vec<_>, Vec<_>) = points.into_iter().partition(|point| is_known(about, point));
         for point in unknown {
-            let notice = format!(
-                "{run}: the model has no `{}` along {}; that sensor is left out",
-                point.location,
-                point.axis.name()
-            );
+            let (location, axis) = (&point.location, point.axis.name());
+            let meant = match nearest_place(about, &point) {
+                Some(nearest) => format!("; did you mean `{nearest}`?"),
+                None => String::new(),
+            };
+            let notice = format!("{run}: the model has no `{location}` along {axis}; that sensor is left out{meant}");
             self.notices.push(notice);
         }
         known

@@ -3,6 +3,7 @@
 use crate::campaign::{History, Quantity};
 use crate::model::{About, Signal, SignalKind};
 use crate::response::signal::output_of;
+use crate::spelling::nearest;
 use crate::transmissibility::{End, Point, points};
 
 /// The signal of the model that a sensor measures.
@@ -69,6 +70,17 @@ pub fn excitation_of(about: &About, point: &Point) -> Option<usize> {
 /// True if the model has the place of the sensor.
 pub fn is_known(about: &About, point: &Point) -> bool {
     excitation_of(about, point).is_some() || output_of(about, &signal_of(about, point)).is_ok()
+}
+
+/// A place of the model on the axis of the sensor that is spelt like its own, but is another.
+pub fn nearest_place<'a>(about: &'a About, point: &Point) -> Option<&'a str> {
+    let excitations = about.excitations.iter().map(|own| (&own.name, &own.axis));
+    let outputs = about.outputs.iter().map(|own| (&own.signal.location, &own.signal.axis));
+    let all = excitations.chain(outputs);
+    let along = all
+        .filter(|(_, axis)| **axis == *point.axis.name())
+        .map(|(name, _)| &**name);
+    nearest(&point.location, along).filter(|nearest| *nearest != point.location)
 }
 
 /// True if the sensor measures a motion that drives the model.
