@@ -66,6 +66,17 @@ axle on_a_post {
     assert_eq!(candidates(model, "coulomb_friction"), expected);
 }
 
+/// A stop in rebound does nothing where one in compression acts: they are never the same, whatever else is in the model.
+#[test]
+fn stops_of_either_side_are_both_tried() {
+    for model in ["one_mass", "quarter_car", "axle_a", "axle_b", "axle_c", "axle_d"] {
+        let all = forms(model, "bump_stop");
+        for form in ["in_compression", "in_rebound", "both_ways"] {
+            assert!(all.iter().any(|own| own == form), "{model}: {all:?}");
+        }
+    }
+}
+
 /// A damper whose seals slip within a stroke, beside a parameter that is tied to another.
 const SEALED: &str = "
 axle sealed {

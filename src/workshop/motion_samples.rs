@@ -6,8 +6,10 @@ use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::schedule::Compiled;
 use qcar_runtime::random::SplitMix;
 
-/// Enough points to reach both sides of a stop.
-const POINTS: u64 = 16;
+/// Enough points to reach each piece of a law: a stop at a gap of about 1 is reached at every fourth.
+const POINTS: u64 = 64;
+/// Sizes of the states, in turn: within gaps and knees, and far beyond them.
+const SIZES: [f64; 2] = [1.0, 10.0];
 /// Difference from rounding, relative to the largest value at a point.
 const ROUNDING: f64 = 1e-9;
 
@@ -40,7 +42,8 @@ fn rates(model: &dyn Model, point: u64) -> Vec<f64> {
     by_name.sort_unstable_by_key(|&place| &about.parameters[place].name);
     let mut p = vec![0.0; by_name.len()];
     by_name.into_iter().for_each(|place| p[place] = 0.5 + random.uniform());
-    let mut signed = |count: usize| -> Vec<f64> { (0..count).map(|_| 2.0 * random.uniform() - 1.0).collect() };
+    let size = SIZES[point as usize % SIZES.len()];
+    let mut signed = |count: usize| -> Vec<f64> { (0..count).map(|_| size * (2.0 * random.uniform() - 1.0)).collect() };
     let u = signed(about.inputs.len());
     let contact = signed(4);
     let x = signed(about.states.len());

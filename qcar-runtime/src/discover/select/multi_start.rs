@@ -130,14 +130,15 @@ fn distinct(sorted: Vec<Refit>) -> Vec<Refit> {
     distinct
 }
 
-/// True if two fits of a model are equally probable and have the same parameters within their standard errors.
+/// True if two fits of a model are equally probable and have the same parameters within their standard errors. A
+/// parameter that neither fit determines, or that both have at the same bound, cannot tell them apart.
 fn is_same_minimum(one: &Refit, other: &Refit) -> bool {
-    let errors = one.stderr().into_iter().zip(other.stderr());
-    let mut parameters = one.estimate.iter().zip(&other.estimate).zip(errors);
-    // A parameter that neither fit determines has no standard error, and cannot tell them apart.
-    let is_apart =
-        |((one, other), errors): ((&f64, &f64), (f64, f64))| (one - other).abs() > SAME_PLACE * errors.0.max(errors.1);
-    (one.log_evidence - other.log_evidence).abs() <= SAME_EVIDENCE && !parameters.any(is_apart)
+    let errors = (one.stderr(), other.stderr());
+    let is_apart = |k: usize| {
+        let is_bounded = one.at_bound[k] != 0 && one.at_bound[k] == other.at_bound[k];
+        !is_bounded && (one.estimate[k] - other.estimate[k]).abs() > SAME_PLACE * errors.0[k].max(errors.1[k])
+    };
+    (one.log_evidence - other.log_evidence).abs() <= SAME_EVIDENCE && !(0..one.estimate.len()).any(is_apart)
 }
 
 /// Start points: the given values, and others spread over the ranges.
