@@ -87,10 +87,11 @@ pub fn credible(sets: &[Set], answers: &[Answer], evidence: &Evidence) -> Vec<us
     let is_refuted =
         |own: &Answer| most_probable.is_some_and(|by| is_refuted(&sets[own.set], &sets[by.set], &sets[base], evidence));
     let mut before = answers.iter().take_while(|own| own.dismissed);
-    if none > numbers.error_probability || !before.all(is_refuted) {
+    let all: f64 = possible.clone().map(|own| own.probability).sum();
+    // Named answers may be so improbable that their probability is no positive number.
+    if none > numbers.error_probability || !before.all(is_refuted) || all <= 0.0 {
         return vec![base];
     }
-    let all: f64 = possible.clone().map(|own| own.probability).sum();
     let mut sum = 0.0;
     let credible = possible.take_while(|own| {
         let wanted = sum < numbers.certain() * all;
