@@ -524,7 +524,7 @@ fn an_effect_says_where_the_sensors_of_a_mass_stand() {
 fn an_effect_is_sized_by_known_values_and_the_model_takes_them_as_defaults() {
     let known = |name: &str| (name == "m_body").then_some(5.0);
     let places = effect("suspended_mass").candidates(&model("one_mass"), &known);
-    let [own] = places.as_slice() else {
+    let [own, _] = places.as_slice() else {
         panic!("{} places", places.len())
     };
     let text = own.text("");
@@ -620,17 +620,60 @@ fn a_named_point_of_a_pitching_body_is_an_end_of_the_suspension() {
     }
 }
 
+const STACK: &str = "axle stack { \"Three masses on a shaker\"
+    param m: kg = 1 in 0.1..10 \"Mass\"; param k: N/m = 1e4 in 1..1e6 \"Stiffness\";
+    direction z {
+        motion shaker; mass low = 3 * m; mass middle = m; mass top = 2 * m;
+        link first: low - shaker { spring k; } link second: middle - low { spring k; } link third: top - middle { spring k; }
+        output top.acceleration;
+    } }";
+
 #[test]
-fn without_a_wheel_a_resonator_sits_on_any_other_mass() {
-    let text = "axle stack { \"Three masses on a shaker\"
-        param m: kg = 1 in 0.1..10 \"Mass\"; param k: N/m = 1e4 in 1..1e6 \"Stiffness\";
-        direction z {
-            motion shaker; mass low = 3 * m; mass middle = m; mass top = 2 * m;
-            link first: low - shaker { spring k; } link second: middle - low { spring k; } link third: top - middle { spring k; }
-            output top.acceleration;
-        } }";
-    let stack = written(text);
-    assert_eq!(effect("secondary_resonator").places(&stack), ["middle", "top"]);
-    assert_eq!(effect("suspended_mass").places(&stack), ["low"]);
-    assert_eq!(effect("secondary_resonator").places(&model("quarter_car")), ["wheel"]);
+fn without_a_road_a_mass_may_hang_on_any_other() {
+    let stack = written(STACK);
+    let forms = |name: &str, model: &Checked| -> Vec<(String, String)> {
+        let candidates = effect(name).candidates(model, &|_| None).into_iter();
+        candidates.map(|own| (own.place, own.form.unwrap())).collect()
+    };
+    let listed = |all: &[(&str, &str)]| -> Vec<(String, String)> {
+        all.iter().map(|&(place, form)| (place.into(), form.into())).collect()
+    };
+    let elsewhere = [
+        ("middle", "vertical"),
+        ("middle", "soft_fore_and_aft"),
+        ("middle", "attached"),
+        ("top", "vertical"),
+        ("top", "soft_fore_and_aft"),
+        ("top", "attached"),
+    ];
+    assert_eq!(forms("secondary_resonator", &stack), listed(&elsewhere));
+    let on_the_body = [("low", "within_body"), ("low", "attached")];
+    assert_eq!(forms("suspended_mass", &stack), listed(&on_the_body));
+    let on_a_car = [("wheel", "vertical"), ("wheel", "soft_fore_and_aft")];
+    assert_eq!(forms("secondary_resonator", &model("quarter_car")), listed(&on_a_car));
+}
+
+#[test]
+fn an_attached_resonator_leaves_the_stated_mass_as_it_is() {
+    let stack = written(STACK);
+    let resonator = effect("secondary_resonator");
+    let text = |form: &str| {
+        patched(&resonator.in_form(form).unwrap(), &stack, "middle")
+            .model
+            .text()
+            .to_string()
+    };
+    assert!(
+        text("vertical").contains("mass middle = m - m_resonator;"),
+        "{}",
+        text("vertical")
+    );
+    assert!(text("attached").contains("mass middle = m;"), "{}", text("attached"));
+    // A car is weighed as a whole.
+    let attached = resonator.in_form("attached").unwrap();
+    let refused = attached.apply(&model("quarter_car"), "wheel", &|_| None).unwrap_err();
+    assert!(
+        refused.to_string().contains("`wheel` does not have the role `part`"),
+        "{refused}"
+    );
 }

@@ -73,6 +73,13 @@ pub fn place_lacks(span: Span, wanted: &str, name: &str) -> Diagnostic {
     .hint("state in the head of the effect what the place must have: `with damper`, `given body`")
 }
 
+/// A place without the role that a form requires.
+pub fn place_has_no_role(span: Span, role: &str, name: &str) -> Diagnostic {
+    Diagnostic::error(Code::PlaceLacks, format!("`{name}` does not have the role `{role}`"))
+        .label(span, "required by this form")
+        .hint("choose a form that applies there with `--form`: `qcar effects EFFECT` lists them")
+}
+
 /// A name that the model has already.
 pub fn already_in_model(span: Span, name: &str, model: &str) -> Diagnostic {
     Diagnostic::error(Code::AlreadyInModel, format!("{model} already has `{name}`"))

@@ -52,7 +52,7 @@ pub use scale::Scale;
 use crate::check::{Checked, Unseen, check_text};
 use crate::derive::identifiability;
 use crate::diagnostic::{Diagnostic, Report, Severity, effects};
-use crate::front::syntax::{Effect, File, Item, Name};
+use crate::front::syntax::{Effect, File, Item, Link, Name};
 use crate::source::Source;
 
 /// The mistakes for which an effect is refused.
@@ -229,7 +229,7 @@ impl Patch {
         }
     }
 
-    /// The model with the effect at a place, given by its label, in its usual form. Starts and ranges that depend on
+    /// The model with the effect at a place, given by its label, in the first form whose conditions it meets. Starts and ranges that depend on
     /// parameters of the model use their `values`, otherwise their defaults, otherwise the middle of their ranges.
     ///
     /// # Errors
@@ -246,7 +246,9 @@ impl Patch {
             let mistake = effects::no_such_place(name.span, &name.text, place, model, &labels);
             return Err(self.report(refused(mistake)));
         };
-        self.made(
+        let forms = self.own_forms();
+        let usual = forms.iter().find(|form| form.form_fits(&base, &roles, place).is_ok());
+        usual.unwrap_or(self).made(
             &identifiability::with_identifiability(model.clone()),
             &base,
             &roles,
@@ -305,7 +307,7 @@ impl Patch {
         place: &Place,
         values: Values,
     ) -> PatchResult<(ModelTree, Vec<NewParameter>, Vec<SignalChange>)> {
-        self.form_fits(base, place)?;
+        self.form_fits(base, roles, place)?;
         let mut patching = apply::apply(Bindings::new(base, roles, &self.effect, place))?;
         let mut asked = Vec::new();
         for (declared, name) in &patching.parameters {
@@ -332,17 +334,22 @@ impl Patch {
         Ok((tree, parameters, patching.signals))
     }
 
-    /// Checks the terms that its form requires in addition to those of the pattern.
-    fn form_fits(&self, base: &ModelTree, place: &Place) -> PatchResult<()> {
-        let (Some(form), Some(link)) = (self.effect.forms.first(), base.link(&place.direction, &place.name)) else {
+    /// Checks the role and the terms that its form requires in addition to those of the pattern.
+    fn form_fits(&self, base: &ModelTree, roles: &Roles, place: &Place) -> PatchResult<()> {
+        let Some(form) = self.effect.forms.first() else {
             return Ok(());
         };
-        match form
-            .terms
-            .iter()
-            .find(|term| !terms::has_terms(&link.body, std::slice::from_ref(term)))
-        {
-            Some(term) => Err(refused(effects::place_lacks(term.span, &term.text, &place.name))),
+        let (kind, along, name) = (self.effect.pattern.kind, &place.direction, &place.name);
+        let has_role = |role: &&Name| place::has_role(roles, kind, along, name, &role.text);
+        if let Some(role) = form.role.as_ref().filter(|role| !has_role(role)) {
+            return Err(refused(effects::place_has_no_role(role.span, &role.text, name)));
+        }
+        let has = |term: &Name, link: &Link| terms::has_terms(&link.body, std::slice::from_ref(term));
+        let lacking = base
+            .link(along, name)
+            .and_then(|link| form.terms.iter().find(|term| !has(term, link)));
+        match lacking {
+            Some(term) => Err(refused(effects::place_lacks(term.span, &term.text, name))),
             None => Ok(()),
         }
     }

@@ -71,14 +71,18 @@ fn named(direction: &Direction, fits: fn(&CoordinateKind) -> bool) -> Vec<String
 
 /// The label of a place of this name; `None` if the pattern does not fit.
 fn called(roles: &Roles, along: &str, pattern: &Pattern, name: &str) -> Option<String> {
-    let has_role = |role: &str| match pattern.kind {
+    let by_name = matching(&pattern.names, |own| own == name)?;
+    let by_role = matching(&pattern.roles, |role| has_role(roles, pattern.kind, along, name, role))?;
+    Some(by_name.or(by_role).unwrap_or(name).to_string())
+}
+
+/// True if a place of this kind and name has a role.
+pub fn has_role(roles: &Roles, kind: PlaceKind, along: &str, name: &str, role: &str) -> bool {
+    match kind {
         PlaceKind::Link => roles.is_link(along, name, role),
         PlaceKind::Mass | PlaceKind::Sensor => roles.is_mass(along, name, role),
         PlaceKind::Force => false,
-    };
-    let by_name = matching(&pattern.names, |own| own == name)?;
-    let by_role = matching(&pattern.roles, has_role)?;
-    Some(by_name.or(by_role).unwrap_or(name).to_string())
+    }
 }
 
 /// The label that the first fitting alternative gives a place; `None` if none fits.

@@ -15,7 +15,7 @@ use crate::front::syntax::{CoordinateKind, Expression, LawStatement, Link};
 pub const OF_LINKS: [&str; 6] = ["tire", "suspension", "mount", "hanger", "pivot_mount", "wheel_bushing"];
 
 /// The words for masses.
-pub const OF_MASSES: [&str; 3] = ["body", "wheel", "pivot"];
+pub const OF_MASSES: [&str; 4] = ["body", "wheel", "pivot", "part"];
 
 /// The parts of a model by their roles.
 #[derive(Clone, Debug, Default)]
@@ -115,6 +115,8 @@ impl Roles {
                 "body" => is(body),
                 // As with links: without a wheel, any other mass may have its part.
                 "wheel" => is(self.wheel.as_ref()) || self.wheel.is_none() && !is(body),
+                // A car is weighed, but what hangs on a part of a machine may be missing from its stated mass.
+                "part" => self.wheel.is_none(),
                 _ => is(self.pivot.as_ref()),
             }
     }

@@ -44,7 +44,9 @@ fn mistakes(effect: &Effect) -> Vec<Diagnostic> {
     for term in pattern.terms.iter().chain(of_forms) {
         found.extend(no_term(term, &WORDS));
     }
-    found.extend(pattern.roles.iter().filter_map(|(role, _)| no_role(role, pattern.kind)));
+    let roles = pattern.roles.iter().map(|(role, _)| role);
+    let roles = roles.chain(effect.forms.iter().filter_map(|form| form.role.as_ref()));
+    found.extend(roles.filter_map(|role| no_role(role, pattern.kind)));
     for change in effect
         .body
         .iter()

@@ -76,6 +76,10 @@ fn form(tokens: &mut Tokens) -> Parsed<Form> {
     const EXAMPLE: &str = "form across_strut { \"what it acts on\" … }";
     tokens.any_word();
     let name = tokens.new_name("the name of a form", EXAMPLE)?;
+    let role = match tokens.peek().as_deref() {
+        Some("role") => Some(after(tokens, "a role", "form attached role part { … }")?),
+        _ => None,
+    };
     let terms = match tokens.peek().as_deref() {
         Some("with") => terms(tokens)?,
         _ => vec![],
@@ -83,7 +87,13 @@ fn form(tokens: &mut Tokens) -> Parsed<Form> {
     let mut inside = tokens.block(EXAMPLE)?;
     let doc = inside.sentence();
     let body = inside.each(change);
-    Ok(Form { name, doc, terms, body })
+    Ok(Form {
+        name,
+        doc,
+        role,
+        terms,
+        body,
+    })
 }
 
 /// A sentence after its word.

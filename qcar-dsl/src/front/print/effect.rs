@@ -18,8 +18,9 @@ pub fn effect_lines(effect: &Effect) -> Vec<String> {
 
 fn form_lines(form: &Form) -> Vec<String> {
     let body = form.body.iter().flat_map(change_lines).collect();
-    let terms = worded(" with ", &texts(&form.terms), ", ");
-    block(&format!("form {}{terms}", form.name.text), &form.doc, body)
+    let role: Vec<String> = form.role.iter().map(|role| role.text.clone()).collect();
+    let conditions = worded(" role ", &role, " | ") + &worded(" with ", &texts(&form.terms), ", ");
+    block(&format!("form {}{conditions}", form.name.text), &form.doc, body)
 }
 
 fn pattern(pattern: &Pattern) -> String {

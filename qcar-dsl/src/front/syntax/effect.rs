@@ -45,6 +45,8 @@ pub struct Form {
     pub name: Name,
     /// The sentence.
     pub doc: String,
+    /// `role wheel`: a role that the place must have for this form.
+    pub role: Option<Name>,
     /// `with law`: terms that the link must have for this form.
     pub terms: Vec<Name>,
     /// In the order of the text.
