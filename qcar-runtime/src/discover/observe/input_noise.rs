@@ -15,7 +15,6 @@ use super::series::LEAST_NOISE;
 use super::time_history::noise;
 use super::{Evidence, PredictError, Stimulus};
 use crate::campaign::Role;
-use crate::discover::numbers::ONE_SIDED;
 use crate::mean::{deviation, rms};
 use crate::model::Model;
 use crate::random::SplitMix;
@@ -25,6 +24,9 @@ use crate::transmissibility::Point;
 
 /// Spectral lines to each side over which the power is averaged: the mean of 33 lines of noise scatters by a quarter.
 const AROUND: usize = 16;
+/// Accepted probability that a spectrum of noise alone has any line that counts as signal: the usual significance level.
+/// Each such line would pass noise that a law of the speed amplifies.
+const FALSE_ALARM: f64 = 0.05;
 /// Seed of the draw, so that each search gives the same answer.
 const SEED: u64 = 1;
 
@@ -129,26 +131,33 @@ fn filtered(period: &[f64], noise: f64, random: &mut SplitMix) -> [Vec<f64>; 2] 
     let mut lines = transform(period);
     let noise = noise.powi(2) * period.len() as f64;
     let power: Vec<f64> = lines.iter().map(|line| line.norm_sqr()).collect();
+    let independent = power.len() as f64 / (2 * AROUND + 1) as f64;
+    let certain = (independent / FALSE_ALARM).ln();
     let mut left = Vec::with_capacity(lines.len());
     for (k, line) in lines.iter_mut().enumerate() {
-        let share = share_of_signal(
-            &power[k.saturating_sub(AROUND)..(k + AROUND + 1).min(power.len())],
-            noise,
-        );
+        let near = &power[k.saturating_sub(AROUND)..(k + AROUND + 1).min(power.len())];
+        let share = share_of_signal(near, noise, certain);
         *line *= share;
         left.push(Complex::from_polar((share * noise).sqrt(), TAU * random.uniform()));
     }
     [synthesize(&lines, period.len()), synthesize(&left, period.len())]
 }
 
-/// Share of the power around a line that is not noise; zero if the power could be noise alone. The lines of a mirrored
-/// signal have one degree of freedom, so the standard deviation of the power of noise is √2 times its mean. Those of a
-/// periodic signal have two, which makes the test stricter than it needs to be.
-fn share_of_signal(power: &[f64], noise: f64) -> f64 {
+/// Share of the power around a line that is not noise; zero if all of it could be noise.
+///
+/// The lines of a mirrored signal have one degree of freedom, so the sum of `n` of them is distributed as χ² with `n`
+/// degrees. The probability that noise has `a` times its mean power there is at most `(a exp(1 - a))^(n/2)` (Chernoff,
+/// H.: A measure of asymptotic efficiency for tests of a hypothesis based on the sum of observations, Annals of
+/// Mathematical Statistics 23, 1952). `certain` is the negative logarithm of the accepted probability. The lines of a
+/// periodic signal have two degrees, which makes the test stricter than it needs to be.
+fn share_of_signal(power: &[f64], noise: f64, certain: f64) -> f64 {
+    if noise == 0.0 {
+        return 1.0;
+    }
     let count = power.len() as f64;
-    let mean = power.iter().sum::<f64>() / count;
-    if mean > noise * (1.0 + ONE_SIDED * (2.0 / count).sqrt()) {
-        1.0 - noise / mean
+    let ratio = power.iter().sum::<f64>() / count / noise;
+    if ratio > 1.0 && 0.5 * count * (ratio - 1.0 - ratio.ln()) >= certain {
+        1.0 - 1.0 / ratio
     } else {
         0.0
     }
@@ -187,5 +196,19 @@ mod tests {
         // Without noise, hardly anything is removed.
         let [filtered, _] = without_noise(&truth, false, &mut random);
         assert!(error(&truth, &filtered) < 1e-3 * before);
+    }
+
+    /// Of a slow sine, noise alone is left beyond its lines, where a law of the speed would amplify it.
+    #[test]
+    fn noise_far_above_a_slow_motion_is_removed_altogether() {
+        let truth: Vec<f64> = (0..1600).map(|k| (TAU * 0.5 * k as f64 / 400.0).sin()).collect();
+        let speed = |signal: &[f64]| -> Vec<f64> { signal.windows(2).map(|pair| pair[1] - pair[0]).collect() };
+        let mut random = SplitMix::new(3);
+        for _ in 0..20 {
+            let noisy: Vec<f64> = truth.iter().map(|own| own + 1e-3 * random.normal()).collect();
+            let [filtered, _] = without_noise(&noisy, false, &mut random);
+            let left = error(&speed(&truth), &speed(&filtered)) / error(&speed(&truth), &speed(&noisy));
+            assert!(left < 0.05, "{left}");
+        }
     }
 }
