@@ -4,6 +4,7 @@
 mod motion_samples;
 
 use std::collections::BTreeMap;
+use std::iter;
 use std::sync::Arc;
 
 use qcar_dsl::check::Checked;
@@ -132,10 +133,33 @@ impl Bench {
             let nuisance = patch.effect().nuisance;
             let patched = patch.candidates(&self.model, &values).into_iter();
             let compiled = patched.map(|own| (derive(own.model.clone()), own)).collect();
-            let apart = told_apart(patch, compiled).into_iter();
+            let apart = self.told_apart(patch, compiled).into_iter();
             apart.flat_map(move |(compiled, patched)| self.candidates_at(&compiled, patched, nuisance))
         };
         patched.flat_map_iter(of_patch).collect()
+    }
+
+    /// Removes forms that are equivalent to an earlier one in this model, also at another place: on a strut that is fixed to
+    /// the upright, friction between wheel and body is friction of the damper, whatever other link it is tried at.
+    fn told_apart(&self, patch: &Patch, all: Vec<(Compiled, Patched)>) -> Vec<(Compiled, Patched)> {
+        if patch.forms().next().is_none() {
+            return all;
+        }
+        let rank = |own: &Patched| patch.forms().position(|form| Some(form) == own.form.as_deref());
+        let ranks: Vec<Option<usize>> = all.iter().map(|(_, own)| rank(own)).collect();
+        let sampled = |(compiled, _): &(Compiled, Patched)| {
+            let alone: Vec<Compiled> = derived_alone(compiled, &self.alone).map(|(_, own)| own).collect();
+            MotionSamples::of(iter::once(compiled).chain(&alone))
+        };
+        let samples: Vec<MotionSamples> = all.iter().map(sampled).collect();
+        let is_first = |place: usize| {
+            let mut before = (0..all.len()).filter(|&other| (ranks[other], other) < (ranks[place], place));
+            let changes_sensors = !all[place].1.signals.is_empty();
+            changes_sensors || before.all(|other| !samples[other].agree_with(&samples[place]))
+        };
+        let first: Vec<bool> = (0..all.len()).map(is_first).collect();
+        let kept = all.into_iter().zip(first).filter(|(_, first)| *first);
+        kept.map(|(own, _)| own).collect()
     }
 
     /// The candidates of a patched model. A location that is given without an axis also stands for its sensors of all
@@ -222,11 +246,18 @@ impl Workshop for Bench {
 
 /// The runnable model, with models of its links that are measured alone.
 fn run(compiled: &Compiled, alone: &[(String, String)]) -> Machine {
-    let derived = |(axis, link): &(String, String)| derive_alone(&compiled.model, axis, link);
-    let alone = alone.iter().filter_map(|own| Some((own, derived(own)?)));
-    alone.fold(Machine::new(compiled), |whole, ((axis, link), alone)| {
+    derived_alone(compiled, alone).fold(Machine::new(compiled), |whole, ((axis, link), alone)| {
         whole.with_alone(axis, link, &alone)
     })
+}
+
+/// The links of a model that are measured alone, with their models.
+fn derived_alone<'a>(
+    compiled: &'a Compiled,
+    alone: &'a [(String, String)],
+) -> impl Iterator<Item = (&'a (String, String), Compiled)> {
+    let derived = |(axis, link): &(String, String)| derive_alone(&compiled.model, axis, link);
+    alone.iter().filter_map(move |own| Some((own, derived(own)?)))
 }
 
 /// The links that a campaign has measured alone, without duplicates.
@@ -241,25 +272,6 @@ fn alone(campaign: &Campaign) -> Vec<(String, String)> {
         }
     }
     links
-}
-
-/// Removes forms that are equivalent to an earlier one in this model, also at another place: on a strut that is fixed to
-/// the upright, friction between wheel and body is friction of the damper, whatever other link it is tried at.
-fn told_apart(patch: &Patch, all: Vec<(Compiled, Patched)>) -> Vec<(Compiled, Patched)> {
-    if patch.forms().next().is_none() {
-        return all;
-    }
-    let rank = |own: &Patched| patch.forms().position(|form| Some(form) == own.form.as_deref());
-    let ranks: Vec<Option<usize>> = all.iter().map(|(_, own)| rank(own)).collect();
-    let samples: Vec<MotionSamples> = all.iter().map(|(compiled, _)| MotionSamples::of(compiled)).collect();
-    let is_first = |place: usize| {
-        let mut before = (0..all.len()).filter(|&other| (ranks[other], other) < (ranks[place], place));
-        let changes_sensors = !all[place].1.signals.is_empty();
-        changes_sensors || before.all(|other| !samples[other].agree_with(&samples[place]))
-    };
-    let first: Vec<bool> = (0..all.len()).map(is_first).collect();
-    let kept = all.into_iter().zip(first).filter(|(_, first)| *first);
-    kept.map(|(own, _)| own).collect()
 }
 
 fn added(parameter: &NewParameter) -> Added {

@@ -77,6 +77,18 @@ fn stops_of_either_side_are_both_tried() {
     }
 }
 
+/// On a rig that gives the motion of the rod, a model has no states: its laws show in the measured force alone.
+#[test]
+fn the_laws_of_a_damper_on_a_rig_are_all_tried() {
+    for (effect, expected) in [
+        ("segmented_polynomial_damper", vec!["parabolas", "slopes"]),
+        ("digressive_damper", vec!["gradual", "blow_off"]),
+        ("bump_stop", vec!["in_compression", "in_rebound", "both_ways"]),
+    ] {
+        assert_eq!(forms("linear_damper", effect), expected);
+    }
+}
+
 /// A damper whose seals slip within a stroke, beside a parameter that is tied to another.
 const SEALED: &str = "
 axle sealed {

@@ -1,5 +1,5 @@
-//! Values of a model's equations of motion at pseudo-random points. Models with the same values are equivalent, whatever
-//! their links are called.
+//! Values of a model's equations of motion and of its outputs at pseudo-random points. Models with the same values are
+//! equivalent, whatever their links are called.
 
 use qcar_dsl::about::{Contact, Model};
 use qcar_dsl::evaluate::Evaluator;
@@ -13,20 +13,24 @@ const SIZES: [f64; 2] = [1.0, 10.0];
 /// Difference from rounding, relative to the largest value at a point.
 const ROUNDING: f64 = 1e-9;
 
-/// The rates of all states, on a resting and on a rolling tyre, at each point.
+/// The rates of all states and the outputs, on a resting and on a rolling tyre, at each point. A law on a rig whose motion
+/// is given shows in a measured force alone.
 pub struct MotionSamples(Vec<Vec<f64>>);
 
 impl MotionSamples {
-    /// The values of a compiled model.
-    pub fn of(compiled: &Compiled) -> Self {
-        let model = Evaluator::new(compiled);
-        Self((0..POINTS).map(|point| rates(&model, point)).collect())
+    /// The values of compiled models, one after the other.
+    pub fn of<'a>(models: impl Iterator<Item = &'a Compiled>) -> Self {
+        let sampled = |compiled| {
+            let model = Evaluator::new(compiled);
+            (0..POINTS).map(|point| values(&model, point)).collect::<Vec<_>>()
+        };
+        Self(models.flat_map(sampled).collect())
     }
 
     /// True if all values are the same but for rounding. A value that is not a number is unlike any other.
     pub fn agree_with(&self, other: &Self) -> bool {
         let alike = |(own, other): (&Vec<f64>, &Vec<f64>)| {
-            let largest = own.iter().fold(0.0_f64, |largest, rate| largest.max(rate.abs()));
+            let largest = own.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
             let mut pairs = own.iter().zip(other);
             own.len() == other.len() && pairs.all(|(a, b)| (a - b).abs() <= ROUNDING * largest)
         };
@@ -34,8 +38,8 @@ impl MotionSamples {
     }
 }
 
-/// The rates at a point. A parameter has the same value in every model with the same names of parameters.
-fn rates(model: &dyn Model, point: u64) -> Vec<f64> {
+/// The rates and outputs at a point. A parameter has the same value in every model with the same names of parameters.
+fn values(model: &dyn Model, point: u64) -> Vec<f64> {
     let about = model.about();
     let mut random = SplitMix::stream(0, point);
     let mut by_name: Vec<usize> = (0..about.parameters.len()).collect();
@@ -49,16 +53,20 @@ fn rates(model: &dyn Model, point: u64) -> Vec<f64> {
     let x = signed(about.states.len());
     let mut constants = vec![0.0; about.constants];
     model.prepare(&p, &mut constants);
-    let mut resting = vec![0.0; x.len()];
-    model.derivative(&constants, &x, &u, &mut resting);
-    let mut rolling = vec![0.0; x.len()];
+    let mut resting = vec![0.0; x.len() + about.outputs.len()];
+    let (rates, outputs) = resting.split_at_mut(x.len());
+    model.derivative(&constants, &x, &u, rates);
+    model.outputs(&constants, &x, &u, outputs);
+    let mut rolling = vec![0.0; resting.len()];
     if about.contact.is_some() {
+        let (rates, outputs) = rolling.split_at_mut(x.len());
         let contact = Contact {
             s: contact[0],
             v: contact[1],
             force: [contact[2], contact[3]],
         };
-        model.rolling_derivative(&constants, &x, &u, &contact, &mut rolling);
+        model.rolling_derivative(&constants, &x, &u, &contact, rates);
+        model.rolling_outputs(&constants, &x, &u, &contact, outputs);
     }
     resting.into_iter().chain(rolling).collect()
 }
