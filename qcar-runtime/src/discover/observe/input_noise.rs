@@ -24,9 +24,6 @@ use crate::transmissibility::Point;
 
 /// Spectral lines to each side over which the power is averaged: the mean of 33 lines of noise scatters by a quarter.
 const AROUND: usize = 16;
-/// Accepted probability that a spectrum of noise alone has any line that counts as signal: the usual significance level.
-/// Each such line would pass noise that a law of the speed amplifies.
-const FALSE_ALARM: f64 = 0.05;
 /// Seed of the draw, so that each search gives the same answer.
 const SEED: u64 = 1;
 
@@ -45,6 +42,7 @@ impl Quieter {
     pub fn of(evidence: &Evidence) -> Option<Self> {
         let (mut quieter, mut drawn) = (evidence.clone(), evidence.clone());
         let mut random = SplitMix::new(SEED);
+        let false_alarm = evidence.numbers.error_probability;
         let mut notices = Vec::new();
         for (run, drawn) in quieter.runs.iter_mut().zip(&mut drawn.runs) {
             let (Stimulus::History { inputs, periodic, .. }, Stimulus::History { inputs: noisy, .. }) =
@@ -53,7 +51,7 @@ impl Quieter {
                 continue;
             };
             for ((sensor, samples), (_, noisy)) in inputs.signals.iter_mut().zip(&mut noisy.signals) {
-                let [filtered, noise] = without_noise(samples, *periodic, &mut random);
+                let [filtered, noise] = without_noise(samples, *periodic, false_alarm, &mut random);
                 let removed = rms(samples.iter().zip(&filtered).map(|(a, b)| a - b)) / deviation(samples);
                 if removed > LEAST_NOISE {
                     notices.push(notice(&run.name, sensor, removed));
@@ -107,10 +105,10 @@ fn notice(run: &str, sensor: &Point, removed: f64) -> String {
 }
 
 /// A signal through the Wiener filter for its noise, which is taken as white, and a draw of the noise that is left.
-fn without_noise(samples: &[f64], periodic: bool, random: &mut SplitMix) -> [Vec<f64>; 2] {
+fn without_noise(samples: &[f64], periodic: bool, false_alarm: f64, random: &mut SplitMix) -> [Vec<f64>; 2] {
     let noise = noise(samples, &[samples], periodic);
     if periodic {
-        return filtered(samples, noise, random);
+        return filtered(samples, noise, false_alarm, random);
     }
     // The filter treats its input as one period. The line through both ends is removed and the signal is continued as
     // an odd function, so that it has no jump and no kink there.
@@ -119,20 +117,21 @@ fn without_noise(samples: &[f64], periodic: bool, random: &mut SplitMix) -> [Vec
     let moving: Vec<f64> = (0..=last).map(|k| samples[k] - line(k)).collect();
     let mirrored = moving[1..last].iter().rev().map(|own| -own);
     let both: Vec<f64> = moving.iter().copied().chain(mirrored).collect();
-    let [signal, mut left] = filtered(&both, noise, random);
+    let [signal, mut left] = filtered(&both, noise, false_alarm, random);
     left.truncate(samples.len());
     [(0..=last).map(|k| signal[k] + line(k)).collect(), left]
 }
 
 /// One period of a signal through the Wiener filter for white noise of this standard deviation, and a draw of the noise
 /// that the filter leaves. At each frequency, the filter leaves the share of the noise power that the signal has of the
-/// whole power.
-fn filtered(period: &[f64], noise: f64, random: &mut SplitMix) -> [Vec<f64>; 2] {
+/// whole power. It leaves nothing where all power could be noise: of a spectrum of noise alone, some line would seem to
+/// contain a signal with the probability `false_alarm`. A law of the speed would amplify the noise there.
+fn filtered(period: &[f64], noise: f64, false_alarm: f64, random: &mut SplitMix) -> [Vec<f64>; 2] {
     let mut lines = transform(period);
     let noise = noise.powi(2) * period.len() as f64;
     let power: Vec<f64> = lines.iter().map(|line| line.norm_sqr()).collect();
     let independent = power.len() as f64 / (2 * AROUND + 1) as f64;
-    let certain = (independent / FALSE_ALARM).ln();
+    let certain = (independent / false_alarm).ln();
     let mut left = Vec::with_capacity(lines.len());
     for (k, line) in lines.iter_mut().enumerate() {
         let near = &power[k.saturating_sub(AROUND)..(k + AROUND + 1).min(power.len())];
@@ -172,6 +171,7 @@ mod tests {
     use crate::random::SplitMix;
 
     const SAMPLES: usize = 8000;
+    const FALSE_ALARM: f64 = 0.05;
 
     fn error(truth: &[f64], signal: &[f64]) -> f64 {
         rms(truth.iter().zip(signal).map(|(a, b)| a - b))
@@ -187,14 +187,14 @@ mod tests {
             .collect();
         let mut random = SplitMix::new(5);
         let noisy: Vec<f64> = truth.iter().map(|own| own + 0.1 * random.normal()).collect();
-        let [filtered, left] = without_noise(&noisy, false, &mut random);
+        let [filtered, left] = without_noise(&noisy, false, FALSE_ALARM, &mut random);
         let (before, after) = (error(&truth, &noisy), error(&truth, &filtered));
         assert!(after < 0.45 * before, "{before} to {after}");
         // The draw is as large as the error that is left.
         let drawn = rms(&left);
         assert!((drawn / after - 1.0).abs() < 0.15, "{drawn} for {after}");
         // Without noise, hardly anything is removed.
-        let [filtered, _] = without_noise(&truth, false, &mut random);
+        let [filtered, _] = without_noise(&truth, false, FALSE_ALARM, &mut random);
         assert!(error(&truth, &filtered) < 1e-3 * before);
     }
 
@@ -206,7 +206,7 @@ mod tests {
         let mut random = SplitMix::new(3);
         for _ in 0..20 {
             let noisy: Vec<f64> = truth.iter().map(|own| own + 1e-3 * random.normal()).collect();
-            let [filtered, _] = without_noise(&noisy, false, &mut random);
+            let [filtered, _] = without_noise(&noisy, false, FALSE_ALARM, &mut random);
             let left = error(&speed(&truth), &speed(&filtered)) / error(&speed(&truth), &speed(&noisy));
             assert!(left < 0.05, "{left}");
         }
