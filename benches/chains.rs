@@ -34,7 +34,7 @@ const ASKED: [&str; 14] = [
 ];
 
 /// The same for FEW, the chain with channels to three of its masses, and TABLE, a new file. Only with three parameters.
-const ASKED_OF_FEW: [&str; 8] = [
+const ASKED_OF_FEW: [&str; 9] = [
     "diff FEW CHAIN",
     "patch FEW coulomb_friction --at l2",
     "fit CAMPAIGN/fitted",
@@ -42,6 +42,7 @@ const ASKED_OF_FEW: [&str; 8] = [
     "score CAMPAIGN/fitted",
     "explore FEW --vary c=20..40 --count 16 --metrics modes,transmissibility --out TABLE",
     "sensitivity FEW --metrics mode.*",
+    "sensitivity FEW --metrics mode.1.*",
     "target CAMPAIGN/targets.toml",
 ];
 
