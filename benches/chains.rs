@@ -34,7 +34,7 @@ const ASKED: [&str; 14] = [
 ];
 
 /// The same for FEW, the chain with channels to three of its masses, and TABLE, a new file. Only with three parameters.
-const ASKED_OF_FEW: [&str; 8] = [
+const ASKED_OF_FEW: [&str; 9] = [
     "diff FEW CHAIN",
     "patch FEW coulomb_friction --at l2",
     "fit CAMPAIGN/fitted",
@@ -42,8 +42,12 @@ const ASKED_OF_FEW: [&str; 8] = [
     "score CAMPAIGN/fitted",
     "explore FEW --vary c=20..40 --count 16 --metrics modes,transmissibility --out TABLE",
     "sensitivity FEW --metrics mode.*",
+    "sensitivity FEW --metrics mode.1.*",
     "target CAMPAIGN/targets.toml",
 ];
+
+/// The same, only with three parameters of each member.
+const ASKED_OF_OWN: [&str; 1] = ["explore FEW --vary c1=20..40 --count 16 --metrics transmissibility --out TABLE"];
 
 /// Targets for the damping of a mode.
 const TARGETS: &str = "subject = \"few.axle\"
@@ -69,9 +73,8 @@ fn main() {
         println!("{what}: millions of instructions of {LENGTHS:?} masses; exponent from 10 to 80, from 40 to 80");
         LENGTHS.iter().for_each(|&masses| write(folder.path(), masses, own));
         ASKED.iter().for_each(|asked| measure(folder.path(), asked));
-        if !own {
-            ASKED_OF_FEW.iter().for_each(|asked| measure(folder.path(), asked));
-        }
+        let further = if own { &ASKED_OF_OWN[..] } else { &ASKED_OF_FEW[..] };
+        further.iter().for_each(|asked| measure(folder.path(), asked));
     }
 }
 

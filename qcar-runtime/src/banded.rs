@@ -6,7 +6,7 @@
 
 use std::collections::VecDeque;
 
-use nalgebra::{Complex, DVector};
+use nalgebra::{Complex, DMatrix, DVector};
 
 /// A square matrix with its states in an order in which it is a narrow band.
 pub(crate) struct Ordered {
@@ -33,6 +33,49 @@ impl Ordered {
             band: distances.max().unwrap_or(0),
             entries,
         }
+    }
+
+    /// Orders the states of a dense square matrix.
+    #[cfg(test)]
+    pub fn of_dense(matrix: &DMatrix<f64>) -> Self {
+        let entries = matrix.iter().enumerate();
+        let entries = entries.map(|(at, value)| (at % matrix.nrows(), at / matrix.nrows(), *value));
+        let nonzeros: Vec<_> = entries.filter(|entry| entry.2 != 0.0).collect();
+        Self::of(matrix.nrows(), &nonzeros)
+    }
+
+    /// The matrix itself, with its states in their own order.
+    pub fn dense(&self) -> DMatrix<f64> {
+        let mut dense = DMatrix::zeros(self.order.len(), self.order.len());
+        for &(row, column, value) in &self.entries {
+            dense[(self.order[row], self.order[column])] = value;
+        }
+        dense
+    }
+
+    /// The transpose, with the states in the same order.
+    #[must_use]
+    pub fn transposed(&self) -> Self {
+        let entries = self.entries.iter().map(|&(row, column, value)| (column, row, value));
+        Self {
+            order: self.order.clone(),
+            band: self.band,
+            entries: entries.collect(),
+        }
+    }
+
+    /// True if no nonzero is infinite or NaN.
+    pub fn is_finite(&self) -> bool {
+        self.entries.iter().all(|(_, _, value)| value.is_finite())
+    }
+
+    /// The product with a vector, both in the order of the positions.
+    pub fn times(&self, vector: &DVector<Complex<f64>>) -> DVector<Complex<f64>> {
+        let mut product = DVector::zeros(vector.len());
+        for &(row, column, value) in &self.entries {
+            product[row] += vector[column] * value;
+        }
+        product
     }
 
     /// The state at each position.
@@ -138,7 +181,8 @@ impl Factors {
     fn of(mut rows: Banded, band: usize) -> Self {
         let count = rows.entries.len() / (3 * band + 1);
         // Replaces a pivot that is zero.
-        let least = f64::EPSILON * rows.entries.iter().map(|entry| entry.norm()).fold(0.0, f64::max);
+        let largest = rows.entries.iter().map(|entry| entry.norm_sqr()).fold(0.0, f64::max);
+        let least = f64::EPSILON * largest.sqrt();
         let mut exchanged = Vec::with_capacity(count);
         for step in 0..count {
             let (below, right) = ((step + band + 1).min(count), (step + 2 * band + 1).min(count));
@@ -154,6 +198,9 @@ impl Factors {
                 *rows.entry_mut(step, step) = least.into();
             }
             for row in step + 1..below {
+                if rows.entry(row, step) == Complex::ZERO {
+                    continue;
+                }
                 let times = rows.entry(row, step) / rows.entry(step, step);
                 *rows.entry_mut(row, step) = times;
                 for column in step + 1..right {
@@ -163,6 +210,22 @@ impl Factors {
             }
         }
         Self { count, rows, exchanged }
+    }
+
+    /// The logarithm of the determinant; its imaginary part is known up to multiples of 2π.
+    pub fn log_determinant(&self) -> Complex<f64> {
+        let exchanges = self.exchanged.iter().enumerate().filter(|(step, pivot)| step != *pivot);
+        let sign = if exchanges.count() % 2 == 0 { 1.0 } else { -1.0 };
+        let (mut product, mut logarithm) = (Complex::from(sign), Complex::<f64>::ZERO);
+        for step in 0..self.count {
+            product *= self.rows.entry(step, step);
+            // One logarithm for several pivots, whose product neither overflows nor vanishes.
+            if !(1e-100..1e100).contains(&product.norm_sqr()) {
+                logarithm += product.ln();
+                product = Complex::ONE;
+            }
+        }
+        logarithm + product.ln()
     }
 
     /// Replaces a right-hand side, in the order of the positions, by its solution.
@@ -189,15 +252,9 @@ mod tests {
 
     use super::Ordered;
 
-    fn nonzeros(matrix: &DMatrix<f64>) -> Vec<(usize, usize, f64)> {
-        let entries = matrix.iter().enumerate();
-        let entries = entries.map(|(at, value)| (at % matrix.nrows(), at / matrix.nrows(), *value));
-        entries.filter(|entry| entry.2 != 0.0).collect()
-    }
-
     /// A full matrix, and two chains that do not act on each other with their states mixed.
     #[test]
-    fn a_solution_is_that_of_the_dense_matrix() {
+    fn solution_and_determinant_are_those_of_the_dense_matrix() {
         let entry = |row: usize, column: usize| ((7 * row + 3 * column * column + 1) as f64).sin();
         let full = DMatrix::from_fn(24, 24, entry);
         let chains = DMatrix::from_fn(24, 24, |row, column| {
@@ -212,9 +269,13 @@ mod tests {
         let right = DVector::from_fn(24, |row, _| Complex::new(row as f64, 1.0));
         for matrix in [full, chains] {
             let dense = matrix.map(Complex::from) - DMatrix::from_diagonal_element(24, 24, shift);
-            let exact = dense.lu().solve(&right).expect("it is regular");
-            let found = Ordered::of(24, &nonzeros(&matrix)).solution(shift, &right);
+            let (ordered, factors) = (Ordered::of_dense(&matrix), dense.lu());
+            let exact = factors.solve(&right).expect("it is regular");
+            let found = ordered.solution(shift, &right);
             assert!((&found - &exact).norm() < 1e-11 * exact.norm(), "{found} {exact}");
+            let [found, exact] = [ordered.less(shift).log_determinant().exp(), factors.determinant()];
+            assert!((found - exact).norm() < 1e-11 * exact.norm(), "{found} {exact}");
+            assert_eq!(ordered.dense(), matrix);
         }
     }
 

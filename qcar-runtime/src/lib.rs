@@ -9,7 +9,7 @@ pub use qcar_model as model;
 
 // Means and RMS values.
 pub mod mean;
-// Dense matrices of a model at rest.
+// Matrices of a model at rest.
 pub mod matrices;
 // Sparse matrices as narrow bands.
 mod banded;

@@ -4,16 +4,23 @@
 //! eigenvector. See Ewins, "Modal Testing", 2nd ed., section 2.5, for modes of nonproportional damping.
 
 // Eigenvectors by inverse iteration.
-mod eigenvectors;
+mod eigenvector;
+// Eigenvalues near a number.
+mod ritz;
+// Whether all eigenvalues within a circle are known.
+mod enclosed;
+// The lowest vibrations.
+mod lowest;
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-use nalgebra::{Complex, DMatrix};
+use nalgebra::Complex;
 
-pub(crate) use eigenvectors::Eigenvectors;
+pub(crate) use eigenvector::eigenvector;
 
-use crate::matrices::{at_rest, dense};
+use crate::banded::Ordered;
+use crate::matrices::at_rest;
 use crate::model::{Matrix, Model, StateKind};
 use crate::response::parameters::Values;
 
@@ -48,9 +55,8 @@ const STILL: f64 = 1e-6;
 /// The modes of a model, lowest frequency first. Eigenvalues without oscillation are left out.
 pub fn modes(model: &(impl Model + ?Sized), values: &Values) -> Vec<Mode> {
     let a = dynamics(model, values.as_slice());
-    let eigenvectors = Eigenvectors::of(&a);
     let roots = vibrations(&a).into_iter();
-    roots.map(|root| mode(model, &eigenvectors, root)).collect()
+    roots.map(|root| mode(model, &a, root)).collect()
 }
 
 /// Frequency (Hz) and damping ratio of each mode, without its shape.
@@ -60,16 +66,25 @@ pub fn frequencies(model: &(impl Model + ?Sized), values: &Values) -> Vec<(f64, 
 }
 
 /// Eigenvalue of each mode with positive imaginary part, lowest frequency first.
-pub(crate) fn vibrations(a: &DMatrix<f64>) -> Vec<Complex<f64>> {
-    let vibrates = |root: &Complex<f64>| root.im > 1e-6 * root.norm() && root.norm() > TAU * RIGID;
+pub(crate) fn vibrations(a: &Ordered) -> Vec<Complex<f64>> {
     // A model without masses has no modes, and the Schur form of a matrix with NaN would not converge.
-    if a.is_empty() || a.iter().any(|value| !value.is_finite()) {
+    if a.order().is_empty() || !a.is_finite() {
         return Vec::new();
     }
-    let roots = a.clone().complex_eigenvalues();
+    let roots = a.dense().complex_eigenvalues();
     let mut roots: Vec<Complex<f64>> = roots.iter().copied().filter(vibrates).collect();
     roots.sort_by(|a, b| frequency(*a).total_cmp(&frequency(*b)));
     roots
+}
+
+/// The same for the modes of lowest frequency, at least `count` of them if there are so many. Those of a large matrix
+/// are computed without all the others, where this is certain to find the same.
+pub(crate) fn first_vibrations(a: &Ordered, count: usize) -> Vec<Complex<f64>> {
+    lowest::lowest_vibrations(a, count).unwrap_or_else(|| vibrations(a))
+}
+
+fn vibrates(root: &Complex<f64>) -> bool {
+    root.im > 1e-6 * root.norm() && root.norm() > TAU * RIGID
 }
 
 fn frequency(root: Complex<f64>) -> f64 {
@@ -158,12 +173,16 @@ fn likeness(first: &IndexedShape, second: &IndexedShape) -> f64 {
 }
 
 /// The matrix A at rest.
-pub(crate) fn dynamics(model: &(impl Model + ?Sized), p: &[f64]) -> DMatrix<f64> {
-    dense(model.about(), Matrix::A, &at_rest(model, p))
+pub(crate) fn dynamics(model: &(impl Model + ?Sized), p: &[f64]) -> Ordered {
+    let about = model.about();
+    let entries = about.matrices.iter().zip(at_rest(model, p));
+    let nonzeros = entries.filter(|(entry, value)| entry.matrix == Matrix::A && *value != 0.0);
+    let nonzeros = nonzeros.map(|(entry, value)| (usize::from(entry.row), usize::from(entry.column), value));
+    Ordered::of(about.states.len(), &nonzeros.collect::<Vec<_>>())
 }
 
-fn mode(model: &(impl Model + ?Sized), eigenvectors: &Eigenvectors, root: Complex<f64>) -> Mode {
-    let vector = eigenvectors.nearest(root);
+fn mode(model: &(impl Model + ?Sized), a: &Ordered, root: Complex<f64>) -> Mode {
+    let vector = eigenvector(a, root);
     let states = model.about().states.iter().zip(vector.iter());
     let positions = states.filter(|(state, _)| state.kind == StateKind::Position);
     let positions: Vec<_> = positions.collect();

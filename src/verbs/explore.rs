@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use qcar_dsl::response::Wanted;
 use qcar_runtime::ensemble::{self, Axis, DIMENSIONS, Design, Ensemble, Metrics, POINTS, Posterior, Scheme, Track};
 use qcar_runtime::error::InputError;
 use qcar_runtime::model::{About, Model};
@@ -120,7 +121,8 @@ enum Metric {
 
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
-    let model = catalogue::load(&arguments.model.model)?;
+    // Metrics need no derivatives.
+    let (model, compiled) = catalogue::load_and_compile(&arguments.model.model, Wanted::Values)?;
     let drawn = arguments.posterior.as_deref().map(parameters::posterior).transpose()?;
     check_same_model(
         arguments,
@@ -141,7 +143,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         design,
         possible: &possible,
     };
-    let program = qcar_dsl::rust::module(&catalogue::compiled(&arguments.model.model)?);
+    let program = qcar_dsl::rust::module(&compiled);
     let choice = Choice {
         scheme: scheme(arguments).name(),
         seed: arguments.seed,

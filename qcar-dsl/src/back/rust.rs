@@ -50,24 +50,19 @@ pub fn module(compiled: &Compiled) -> String {
         trait_impl::implementation(compiled) + &vectors.types,
         about::about(&compiled.about),
         within(STRAIGHT, numbers, "}"),
-        within(WIDE, vectors.wide.iter().map(|own| indent(own)), "    }\n}"),
-        within(FOURS, vectors.fours.iter().map(|own| indent(own)), "    }\n}"),
+        within(WIDE, vectors.wide.iter().map(|own| indent("", own)), "    }\n}"),
+        within(FOURS, vectors.fours.iter().map(|own| indent("", own)), "    }\n}"),
     ];
-    let body = sections.join("\n");
-    let fingerprint = format!(
-        "\n/// A hash of the text of this module.\npub const FINGERPRINT: u64 = {:#018x};\n",
-        fnv1a(body.as_bytes())
-    );
+    let mut body = sections.join("\n");
+    let hash = fnv1a(body.as_bytes());
+    body += &format!("\n/// A hash of the text of this module.\npub const FINGERPRINT: u64 = {hash:#018x};\n");
     let doc = if compiled.model.doc.is_empty() {
         &compiled.model.name
     } else {
         &compiled.model.doc
     };
-    format!(
-        "/// {doc}\n{ALLOW}pub mod {} {{\n{}}}\n",
-        compiled.model.name,
-        indent(&(body + &fingerprint))
-    )
+    let head = format!("/// {doc}\n{ALLOW}pub mod {} {{\n", compiled.model.name);
+    indent(&head, &body) + "}\n"
 }
 
 const ALLOW: &str = "#[allow(clippy::all, unused, non_snake_case, reason = \"names and numbers are the model's, and not every model needs all\")]\n";
@@ -104,13 +99,22 @@ mod fours {
 
 /// Functions between the beginning and the end of their module.
 fn within(head: &str, functions: impl Iterator<Item = String>, end: &str) -> String {
-    let functions: String = functions.map(|own| format!("\n{}", indent(&own))).collect();
-    format!("{head}{functions}{end}\n")
+    let mut text = head.to_string();
+    for own in functions {
+        text += &indent("\n", &own);
+    }
+    text + end + "\n"
 }
 
-fn indent(text: &str) -> String {
-    let margin = |line: &str| if line.is_empty() { "" } else { "    " };
-    text.lines().flat_map(|line| [margin(line), line, "\n"]).collect()
+/// A text with a margin at each of its lines, after a head without one. The text of a long model has megabytes, so each
+/// copy of it counts.
+fn indent(head: &str, text: &str) -> String {
+    let mut indented = String::with_capacity(head.len() + text.len() + text.len() / 4);
+    indented += head;
+    for line in text.lines() {
+        indented.extend([if line.is_empty() { "" } else { "    " }, line, "\n"]);
+    }
+    indented
 }
 
 /// The 64-bit FNV-1a hash (Fowler, Noll and Vo).

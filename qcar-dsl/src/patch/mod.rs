@@ -53,6 +53,7 @@ use crate::check::{Checked, Unseen, check_text};
 use crate::derive::identifiability;
 use crate::diagnostic::{Diagnostic, Report, Severity, effects};
 use crate::front::syntax::{Effect, File, Item, Link, Name};
+use crate::hash::HashMap;
 use crate::source::Source;
 
 /// The mistakes for which an effect is refused.
@@ -193,13 +194,20 @@ impl Patch {
         let roles = Roles::of(&base, values);
         let forms = self.own_forms();
         let before = identifiability::with_identifiability(model.clone());
-        let applies = |place: &Place| {
-            forms
-                .iter()
-                .any(|form| form.made(&before, &base, &roles, place, values).is_ok())
+        // An error of a sensor leaves the same model at every place, so one check serves all of them.
+        let mut accepted: HashMap<String, bool> = HashMap::default();
+        let mut applies = |place: &Place| {
+            forms.iter().any(|form| {
+                let Ok((mut tree, ..)) = form.tree(&base, &roles, place, values) else {
+                    return false;
+                };
+                tree.axle.doc.clear();
+                let accepts = || accepted_model(&tree, &before).is_ok();
+                *accepted.entry(tree.file().to_string()).or_insert_with(accepts)
+            })
         };
         let places = place::fitting(&base, &roles, &self.effect.pattern).into_iter();
-        places.filter(applies).map(|place| place.label).collect()
+        places.filter(|place| applies(place)).map(|place| place.label).collect()
     }
 
     /// The model with the effect at each place where it applies, in the order of the model's text, and in each form. It
@@ -275,20 +283,7 @@ impl Patch {
     ) -> Result<Patched, Report> {
         let made = self.tree(base, roles, place, values);
         let (tree, parameters, signals) = made.map_err(|refused| self.report(refused))?;
-        let text = Source {
-            name: format!("{}.axle", tree.axle.name.text),
-            text: tree.file().to_string(),
-        };
-        let model = check_text(text, &|_, path| Err(format!("{path} is not part of a patched model")))?;
-        let model = identifiability::with_identifiability(model);
-        if model.unseen().iter().any(|own| hides_more(own, before.unseen())) {
-            let mut report = model.warnings().clone();
-            report
-                .diagnostics
-                .iter_mut()
-                .for_each(|found| found.severity = Severity::Error);
-            return Err(report);
-        }
+        let model = accepted_model(&tree, before)?;
         Ok(Patched {
             effect: self.effect.name.text.clone(),
             place: place.label.clone(),
@@ -394,6 +389,26 @@ impl Patched {
         let comments: String = comments.map(|line| format!("// {line}\n")).collect();
         format!("{comments}{}", self.model.text())
     }
+}
+
+/// The patched model, if the compiler accepts it and its outputs determine its parameters as far as those of the model
+/// before.
+fn accepted_model(tree: &ModelTree, before: &Checked) -> Result<Checked, Report> {
+    let text = Source {
+        name: format!("{}.axle", tree.axle.name.text),
+        text: tree.file().to_string(),
+    };
+    let model = check_text(text, &|_, path| Err(format!("{path} is not part of a patched model")))?;
+    let model = identifiability::with_identifiability(model);
+    if model.unseen().iter().any(|own| hides_more(own, before.unseen())) {
+        let mut report = model.warnings().clone();
+        report
+            .diagnostics
+            .iter_mut()
+            .for_each(|found| found.severity = Severity::Error);
+        return Err(report);
+    }
+    Ok(model)
 }
 
 /// True if a group has more undetermined combinations than the groups of the unpatched model in it. Otherwise its new

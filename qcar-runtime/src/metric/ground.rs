@@ -12,6 +12,7 @@ use super::travel::WithTravel;
 use super::vibration::Vibrations;
 use crate::campaign::RoleNames;
 use crate::model::{About, Model, Quantity, Signal, SignalKind};
+use crate::modes::{dynamics, vibrations};
 use crate::response::parameters::Values;
 use crate::response::resonance;
 use crate::response::signal::driver;
@@ -95,8 +96,7 @@ impl<'a> Ground<'a> {
         courses: Vec<Course>,
     ) -> Self {
         let model = WithTravel::new(model, names);
-        let vibrations = Vibrations::of(&model, values.as_slice(), &[]).count();
-        let mut metrics = metrics(model.about(), vibrations);
+        let mut metrics = metrics(model.about(), vibrations(&dynamics(&model, values.as_slice())).len());
         metrics.retain(|metric| tyre.is_some() || !metric.what.is_ridden());
         let wheel = Roles::of(model.about(), names)
             .ok()
@@ -415,14 +415,15 @@ struct AtRest<'d> {
 
 impl<'d> AtRest<'d> {
     fn new(ground: &Ground<'_>, values: &Values, directions: &'d [Vec<f64>]) -> Self {
-        let of_mode = |reading: &Reading| {
-            let what = ground.metrics[reading.metric].what;
-            matches!(what, What::Frequency(_) | What::Damping(_))
+        let number = |reading: &Reading| match ground.metrics[reading.metric].what {
+            What::Frequency(place) | What::Damping(place) => Some(place + 1),
+            _ => None,
         };
-        let wanted = ground.readings.iter().any(of_mode);
+        let highest = ground.readings.iter().filter_map(number).max();
+        let up_to = |count: usize| Vibrations::of(&ground.model, values.as_slice(), count, directions);
         Self {
             directions,
-            vibrations: wanted.then(|| Vibrations::of(&ground.model, values.as_slice(), directions)),
+            vibrations: highest.map(up_to),
         }
     }
 

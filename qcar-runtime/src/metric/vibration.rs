@@ -5,11 +5,12 @@ use std::f64::consts::TAU;
 
 use nalgebra::Complex;
 
+use crate::banded::Ordered;
 use crate::matrices::sensitivities_at_rest;
 use crate::model::{Matrix, Model};
-use crate::modes::{Eigenvectors, dynamics, vibrations};
+use crate::modes::{dynamics, eigenvector, first_vibrations};
 
-/// The modes of a model, lowest frequency first, with derivatives along directions of the parameters.
+/// Modes of a model, lowest frequency first, with derivatives along directions of the parameters.
 pub(super) struct Vibrations<'d> {
     modes: Vec<Vibration>,
     directions: &'d [Vec<f64>],
@@ -24,17 +25,18 @@ struct Vibration {
 }
 
 impl<'d> Vibrations<'d> {
-    pub fn of(model: &dyn Model, p: &[f64], directions: &'d [Vec<f64>]) -> Self {
+    /// At least the first `count` modes, or all if there are fewer.
+    pub fn of(model: &dyn Model, p: &[f64], count: usize, directions: &'d [Vec<f64>]) -> Self {
         let a = dynamics(model, p);
         let vibration = |root| Vibration {
             root,
             slopes: OnceCell::new(),
         };
         Self {
-            modes: vibrations(&a).into_iter().map(vibration).collect(),
+            modes: first_vibrations(&a, count).into_iter().map(vibration).collect(),
             directions,
             gradient: (!directions.is_empty()).then(|| Gradient {
-                sides: [&a, &a.transpose()].map(Eigenvectors::of),
+                sides: [a.transposed(), a],
                 parameters: p.len(),
                 nonzeros: nonzeros(model, p),
             }),
@@ -68,8 +70,8 @@ impl<'d> Vibrations<'d> {
 
 /// What the derivatives of the eigenvalues of A at rest need.
 struct Gradient {
-    /// Eigenvectors of A and of its transpose.
-    sides: [Eigenvectors; 2],
+    /// The transpose of A, and A.
+    sides: [Ordered; 2],
     /// Number of parameters.
     parameters: usize,
     /// Row, column and parameter of each nonzero of `∂A/∂p`, with its value.
@@ -81,7 +83,7 @@ impl Gradient {
     ///
     /// It is `wᵀ ∂A/∂p v / wᵀ v`, with its right and left vectors (Fox and Kapoor, AIAA J. 6, 1968).
     fn of(&self, root: Complex<f64>) -> Vec<Complex<f64>> {
-        let [right, left] = self.sides.each_ref().map(|side| side.nearest(root));
+        let [left, right] = self.sides.each_ref().map(|side| eigenvector(side, root));
         let scale = left.dot(&right);
         let mut gradient = vec![Complex::ZERO; self.parameters];
         for &([row, column, parameter], value) in &self.nonzeros {

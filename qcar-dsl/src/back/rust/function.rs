@@ -238,21 +238,19 @@ impl<'a> Printer<'a> {
     }
 
     /// The statements that compute a value and store it.
-    fn compute(&self, value: Value) -> Vec<String> {
-        let operation = self.written().operation(value);
-        let mut statements = vec![format!("let {} = {operation};", self.local(value))];
-        if let Some(place) = self.cut.kept.get(&value) {
-            statements.push(format!("kept[{place}] = {};", self.local(value)));
-        }
+    fn compute(&self, value: Value) -> impl Iterator<Item = String> {
+        let computed = format!("let {} = {};", self.local(value), self.written().operation(value));
+        let kept = self.cut.kept.get(&value);
+        let kept = kept.map(|place| format!("kept[{place}] = {};", self.local(value)));
         let results = self.cut.results(value).iter();
-        statements.extend(results.map(|&place| self.store(place, value)));
-        statements
+        let stored = results.map(move |&place| self.store(place, value));
+        [computed].into_iter().chain(kept).chain(stored)
     }
 
     fn store(&self, place: usize, value: Value) -> String {
         let stored = self.form.store(place, &self.written().operand(value));
         match self.function.results.get(place) {
-            Some(result) => format!("{stored} // {result}"),
+            Some(result) => stored + " // " + result,
             None => stored,
         }
     }
@@ -271,6 +269,11 @@ impl<'a> Printer<'a> {
 }
 
 fn indent(statements: impl Iterator<Item = String>) -> String {
-    let indented = |statement: String| -> String { statement.lines().flat_map(|line| ["    ", line, "\n"]).collect() };
-    statements.map(indented).collect()
+    let mut text = String::new();
+    for statement in statements {
+        for line in statement.lines() {
+            text.extend(["    ", line, "\n"]);
+        }
+    }
+    text
 }

@@ -87,9 +87,13 @@ impl<'a> Pieces<'a> {
 
     /// The results that are numbers or leaves, with their positions; the first piece stores them.
     pub fn stored(&self, piece: usize) -> Vec<(usize, Value)> {
+        // A long program has many pieces and many results, so no other piece looks at them.
+        if piece > 0 {
+            return Vec::new();
+        }
         let results = self.program.outputs.iter().copied().enumerate();
         results
-            .filter(|&(_, value)| piece == 0 && !is_computed(self.program, value))
+            .filter(|&(_, value)| !is_computed(self.program, value))
             .collect()
     }
 
