@@ -230,7 +230,7 @@ impl Nonlinear {
     /// Fails if the folder cannot be written to.
     fn write(&self, folder: &Path) -> Result<(), InputError> {
         let values = files::parameters(&self.model, &self.campaign.name, &self.parameters);
-        put(folder, "parameters.toml", &values)?;
-        put(folder, "fit.json", &self.json())
+        put(folder, "fit.json", &self.json())?;
+        put(folder, "parameters.toml", &values)
     }
 }
