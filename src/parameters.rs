@@ -219,8 +219,25 @@ fn is_answer(path: &Path) -> bool {
 
 /// A sentence for each value `p` outside the plausible range of the model, most often because of its unit.
 pub fn out_of_range(about: &About, p: &[f64]) -> Vec<String> {
-    let all = about.parameters.iter().zip(p);
-    let beyond = all.filter_map(|(parameter, &value)| {
+    beyond_ranges(about, about.parameters.iter().zip(p.iter().copied()))
+}
+
+/// The same for parameters of which some have no value: those in `stated`, by name.
+pub fn stated_out_of_range(about: &About, stated: &BTreeMap<String, f64>) -> Vec<String> {
+    let known = about.parameters.iter();
+    let known = known.filter_map(|own| Some((own, *stated.get(&*own.name)?)));
+    beyond_ranges(about, known)
+}
+
+/// The same for the values of a campaign.
+pub fn campaign_out_of_range(about: &About, campaign: &Campaign) -> Vec<String> {
+    let start = campaign.parameters.iter().map(|own| (own.name.clone(), own.value));
+    let stated = campaign.vehicle.iter().cloned().chain(start).collect();
+    stated_out_of_range(about, &stated)
+}
+
+fn beyond_ranges<'a>(about: &'a About, values: impl Iterator<Item = (&'a model::Parameter, f64)>) -> Vec<String> {
+    let beyond = values.filter_map(|(parameter, value)| {
         let (low, high) = parameter.range?;
         let shown = |value| units::value(value, &parameter.unit);
         let (name, unit, model) = (&parameter.name, units::name(&parameter.unit), &about.name);

@@ -133,6 +133,11 @@ pub fn complaint(text: &str) -> String {
     wrapped.split_inclusive('\n').map(marked).collect()
 }
 
+/// Writes notices to standard error, beside a result that has no place for them, such as CSV.
+pub fn aside(notices: &str) {
+    eprint!("{}", outlets()[1].wrapped(notices));
+}
+
 /// A line in pieces of at most this number of characters, broken at spaces.
 fn broken(line: &str, width: usize) -> String {
     let text = line.trim_end_matches('\n');

@@ -22,7 +22,7 @@ use crate::completion;
 use crate::failure::Failure;
 use crate::files::{folder_for_results, put};
 use crate::interruption::{leave, note};
-use crate::parameters::{bound, check_campaign, own};
+use crate::parameters::{bound, campaign_out_of_range, check_campaign, own};
 use crate::progress::Showing;
 use crate::results::Results;
 use crate::terminal::prose;
@@ -238,6 +238,7 @@ pub(crate) fn answer(
         kc::gradients(campaign)?;
     }
     let setting = setting(campaign, bench.model().about())?;
+    let outside = campaign_out_of_range(bench.model().about(), campaign);
     let showing = Showing::new();
     showing.step(format!("{}: reading", campaign.name));
     let mut evidence = Evidence::from_campaign(campaign, bench.model().about())?;
@@ -262,6 +263,7 @@ pub(crate) fn answer(
     let discovery =
         discovery.map_err(|error| Failure::Input(format!("{}: {error}\n", campaign.manifest().display())))?;
     evidence.notices.extend(offsets_of_the_model(&discovery));
+    evidence.notices.extend(outside);
     // Without sweeps that the model can be compared with, there are no places.
     let [before, after] = [0, 1].map(|of| with_nuisances(bench.clone(), &discovery.nuisances[of]));
     let sweeps = Sweeps::new(before.model(), &discovery.before.refit, &evidence).unwrap_or_default();

@@ -3,13 +3,14 @@
 use clap::Args;
 use qcar_dsl::response::Wanted;
 use qcar_runtime::model::About;
+use serde::Serialize;
 
 use crate::catalogue;
 use crate::failure::{Failure, flag};
 use crate::json;
 use crate::parameters;
 use crate::state_space::{Rows, StateSpace, state_space, without_sensitivities};
-use crate::table::{Table, number};
+use crate::table::{Table, noted_below, number};
 use crate::terminal::prose;
 use crate::units;
 use crate::verbs::{Format, ModelArguments};
@@ -45,10 +46,23 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     };
     let matrices = evaluate(&*model, &values, arguments.axis.as_deref());
     parameters::require_finite(&about.name, matrices.matrices.values().flatten().flatten())?;
+    let notices = parameters::out_of_range(about, values.as_slice());
     Ok(match arguments.format {
-        Format::Text => prose(&text(&matrices)),
-        Format::Json => json::line(&matrices),
+        Format::Text => prose(&(text(&matrices) + &noted_below(&notices))),
+        Format::Json => json::line(&Json {
+            matrices: &matrices,
+            notices: &notices,
+        }),
     })
+}
+
+/// The result as JSON, see `docs/json.md`.
+#[derive(Serialize)]
+struct Json<'a> {
+    #[serde(flatten)]
+    matrices: &'a StateSpace,
+    /// Values outside the ranges of the model, as sentences.
+    notices: &'a [String],
 }
 
 fn check_axis(about: &About, axis: Option<&str>) -> Result<(), Failure> {

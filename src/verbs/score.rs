@@ -12,8 +12,8 @@ use qcar_runtime::fit::report::{ChannelFit, ParameterFit};
 use crate::catalogue;
 use crate::failure::Failure;
 use crate::interruption::keep;
-use crate::parameters;
-use crate::table::{Table, number, or_dash};
+use crate::parameters::{self, campaign_out_of_range};
+use crate::table::{Table, noted, number, or_dash};
 use crate::terminal::prose;
 use crate::units;
 use crate::verbs::fit::{self, Choices, Fitted};
@@ -129,6 +129,7 @@ fn compare(of: &Fitted, truth: &Truth, within: f64) -> (String, bool) {
     if !of.fit.channels.is_empty() {
         text += &format!("\n{}", channels(&of.fit.channels));
     }
+    text += &noted(&campaign_out_of_range(of.model.about(), &of.campaign));
     (text, well)
 }
 

@@ -19,8 +19,8 @@ use crate::progress::while_counting;
 use crate::report::{Report, page};
 use crate::results::Results;
 use crate::roads;
-use crate::table::Table;
-use crate::terminal::prose;
+use crate::table::{Table, noted};
+use crate::terminal::{aside, prose};
 use crate::verbs::TableFormat;
 
 // The axle with its values and roads.
@@ -234,7 +234,10 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     Ok(match arguments.format {
         TableFormat::Text => prose(&render::text(&found)),
         TableFormat::Json => json::line(&found),
-        TableFormat::Csv => render::csv(&found),
+        TableFormat::Csv => {
+            aside(&noted(&found.notices));
+            render::csv(&found)
+        }
     })
 }
 

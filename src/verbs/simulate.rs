@@ -20,7 +20,8 @@ use crate::parameters::{self, Setting};
 use crate::progress::while_counting;
 use crate::results::Results;
 use crate::roads;
-use crate::terminal::prose;
+use crate::table::noted;
+use crate::terminal::{aside, prose};
 use crate::verbs::TableFormat;
 
 // Names of the files.
@@ -142,7 +143,10 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     Ok(match arguments.format {
         TableFormat::Text => prose(&simulated.result().text()),
         TableFormat::Json => simulated.json(),
-        TableFormat::Csv => simulated.result().csv(),
+        TableFormat::Csv => {
+            aside(&noted(&simulated.campaign.notices));
+            simulated.result().csv()
+        }
     })
 }
 
@@ -169,7 +173,10 @@ fn over_roads(arguments: &Arguments) -> Result<String, Failure> {
     Ok(match arguments.format {
         TableFormat::Text => prose(&rolled.text()),
         TableFormat::Json => rolled.json(),
-        TableFormat::Csv => rolled.csv(),
+        TableFormat::Csv => {
+            aside(&noted(&campaign.notices));
+            rolled.csv()
+        }
     })
 }
 

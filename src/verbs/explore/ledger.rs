@@ -64,6 +64,8 @@ pub(super) struct Choice<'a> {
     pub part: Part,
     /// Version of the program that computes them.
     pub program: &'a str,
+    /// Notices on the values, as sentences.
+    pub notices: &'a [String],
 }
 
 impl Ledger {
