@@ -254,6 +254,44 @@ fn every_verb_notes_values_of_a_campaign_outside_the_ranges_of_its_model() {
     }
 }
 
+/// In a campaign and in a parameter file, with the line and the value as it stands there.
+#[test]
+fn gravity_is_that_of_a_planet() {
+    let folder = tempfile::tempdir().unwrap();
+    let own = folder.path().join("own");
+    copy(Path::new("models/campaigns/axle_a_rig"), &own);
+    let manifest = own.join("campaign.toml");
+    let text = fs::read_to_string(&manifest).unwrap();
+    let line = 1 + text.lines().position(|line| line == "gravity = 9.81").unwrap();
+    let campaign = own.to_str().unwrap();
+    let frf = ["frf", "quarter_car", "--params", "FILE"];
+    let magnitude = "the magnitude of the acceleration of gravity";
+    for value in ["0", "0.0", "-9.81", "1", "9810.0", "\"-1 g\""] {
+        fs::write(&manifest, text.replace("gravity = 9.81", &format!("gravity = {value}"))).unwrap();
+        let place = format!("campaign.toml, line {line}, column");
+        let said = [&place, &format!("found {value}, expected {magnitude}"), "leave it out"];
+        common::refused(&qcar(&["check", campaign]), &said);
+        common::refused(&qcar(&["frf", "axle_a", "--params", campaign]), &said);
+        let [_, found, remedy] = said;
+        let content = format!("[vehicle]\ngravity = {value}\n");
+        refused(&content, &frf, &["line 2, column 1, `vehicle.gravity`", found, remedy]);
+    }
+    fs::write(&manifest, text.replace("gravity = 9.81", "gravity = nan")).unwrap();
+    common::refused(&qcar(&["check", campaign]), &[&format!("line {line}"), "found nan"]);
+    refused(
+        "[vehicle]\ngravity = nan\n",
+        &frf,
+        &["line 2", "found nan, expected a finite number"],
+    );
+    refused(
+        "[vehicle]\ngravity = { value = 9.81, unit = \"kg\" }\n",
+        &frf,
+        &["line 2", "the unit \"kg\"", "of the kind of m/s^2"],
+    );
+    fs::write(&manifest, text.replace("gravity = 9.81", "gravity = \"1 g\"")).unwrap();
+    assert_eq!(qcar(&["check", campaign]).status, 0);
+}
+
 #[test]
 fn values_for_a_patch_have_names_of_its_model() {
     let patch = ["patch", "axle_c", "digressive_damper", "--at", "damper"];
