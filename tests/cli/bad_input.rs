@@ -143,6 +143,25 @@ fn values_outside_the_ranges_of_the_model_are_not_passed_on() {
         ],
         &said,
     );
+    // In the unit in which the user has written the value, or else in that of the results.
+    let export = ["export", "quarter_car", "--as", "c", "--out", &code];
+    let units: [(&[&str], &str); 3] = [
+        (
+            &["--set", "k_tire=20 N/mm"],
+            "found 20 N/mm, expected a value from 50 to 1000 N/mm, for",
+        ),
+        (
+            &["--set", "k_tire=0.02 kN/mm", "--units", "N/mm"],
+            "found 0.02 kN/mm, expected a value from 0.05 to 1 kN/mm",
+        ),
+        (
+            &["--set", "k_tire=20000", "--units", "N/mm"],
+            "found 20 N/mm, expected a value from 50 to 1000 N/mm, for",
+        ),
+    ];
+    for (set, said) in units {
+        refused("", &[&export[..], set].concat(), &["--set k_tire", said]);
+    }
     let sets = out("sets.csv");
     let explored = [
         "explore",
