@@ -49,7 +49,8 @@ impl FromStr for Setting {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (name, value) = text.split_once('=').ok_or("expected name=value, such as k_tm=6e5")?;
+        let named = text.split_once('=').filter(|(name, _)| !name.trim().is_empty());
+        let (name, value) = named.ok_or("expected name=value, such as k_tm=6e5")?;
         let number = value.trim().parse::<f64>().ok().filter(|v| v.is_finite());
         let quantity = || Declared::quantity(value).map(|(value, unit)| (value, Some(unit)));
         let (value, unit) = number.map(|value| (value, None)).or_else(quantity).ok_or_else(|| {

@@ -182,7 +182,12 @@ fn stem(out: &Path, extension: &str) -> Result<String, Failure> {
         Some(stem) => Ok(stem.into()),
         None => {
             let (found, expected) = (out.display(), format!("a file that ends in .{extension}"));
-            let remedy = format!("write --out {}", out.with_extension(extension).display());
+            // A path such as `.` has no name that could get the ending.
+            let ended = match out.file_name() {
+                Some(_) => out.with_extension(extension),
+                None => out.join(format!("model.{extension}")),
+            };
+            let remedy = format!("write --out {}", ended.display());
             Err(flag("--out", found, &expected, &remedy).into())
         }
     }

@@ -31,8 +31,15 @@ pub struct Arguments {
     #[arg(required = true)]
     folders: Vec<PathBuf>,
     /// Allowed error of a well determined parameter, in percent
-    #[arg(long, value_name = "PERCENT", default_value_t = 3.0)]
+    #[arg(long, value_name = "PERCENT", default_value = "3", value_parser = percent, allow_hyphen_values = true)]
     within: f64,
+}
+
+/// An allowed error, written as percent.
+fn percent(text: &str) -> Result<f64, String> {
+    let number = text.trim().trim_end_matches('%').trim_end().parse::<f64>().ok();
+    let number = number.filter(|number| number.is_finite() && *number >= 0.0);
+    number.ok_or_else(|| format!("expected percent, zero or more, such as 3, found `{text}`"))
 }
 
 /// Runs the verb.

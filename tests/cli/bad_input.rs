@@ -118,6 +118,29 @@ fn flags_that_contradict_each_other_are_refused() {
     assert!(!out.exists());
 }
 
+#[test]
+fn numbers_and_names_of_flags_are_checked() {
+    let score = ["score", "models/campaigns/axle_a_rig", "--within"];
+    for value in ["nan", "-5", "inf", "three"] {
+        let said = ["--within <PERCENT>", "expected percent, zero or more", value];
+        refused("", &[&score[..], &[value]].concat(), &said);
+    }
+    refused(
+        "",
+        &["frf", "quarter_car", "--set", "=3"],
+        &["--set", "expected name=value"],
+    );
+    let export = ["export", "quarter_car", "--as", "c", "--out", ".."];
+    refused("", &export, &["a file that ends in .c", "write --out ../model.c"]);
+    let slow = ["--road", "C@80km/h", "--road", "B@0km/h"];
+    let said = ["`--road B@0km/h`", "a speed of 0 m/s"];
+    refused(
+        "",
+        &[&["simulate", "models/campaigns/axle_a_rig"][..], &slow].concat(),
+        &said,
+    );
+}
+
 /// A stiffness in N/mm without its unit.
 #[test]
 fn values_outside_the_ranges_of_the_model_are_not_passed_on() {

@@ -197,6 +197,34 @@ fn a_study_in_the_folder_of_its_campaign_replaces_no_record() {
 }
 
 #[test]
+fn the_description_of_a_design_replaces_no_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let [sets, beside] = ["sets.csv", "sets.csv.design.json"].map(|name| folder.path().join(name));
+    fs::write(&beside, "of another program").unwrap();
+    let line = "explore quarter_car --vary m_wheel=-1%..1% --count 2 --metrics modes --out";
+    let line: Vec<&str> = line.split(' ').chain([sets.to_str().unwrap()]).collect();
+    refused(
+        &qcar(&line),
+        &[
+            "sets.csv.design.json",
+            "a file of another origin",
+            "choose another file",
+        ],
+    );
+    assert_eq!(fs::read_to_string(&beside).unwrap(), "of another program");
+    fs::remove_file(&beside).unwrap();
+    succeeds(&line);
+    // Without its results, a description is worth nothing.
+    fs::remove_file(&sets).unwrap();
+    succeeds(
+        &line
+            .iter()
+            .map(|word| if *word == "2" { "3" } else { word })
+            .collect::<Vec<_>>(),
+    );
+}
+
+#[test]
 fn a_patch_replaces_no_file() {
     let folder = tempfile::tempdir().unwrap();
     let notes = folder.path().join("notes.txt");
