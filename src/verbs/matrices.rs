@@ -3,7 +3,6 @@
 use clap::Args;
 use qcar_dsl::response::Wanted;
 use qcar_runtime::model::About;
-use serde::Serialize;
 
 use crate::catalogue;
 use crate::failure::{Failure, flag};
@@ -46,23 +45,10 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     };
     let matrices = evaluate(&*model, &values, arguments.axis.as_deref());
     parameters::require_finite(&about.name, matrices.matrices.values().flatten().flatten())?;
-    let notices = parameters::out_of_range(about, values.as_slice());
     Ok(match arguments.format {
-        Format::Text => prose(&(text(&matrices) + &noted_below(&notices))),
-        Format::Json => json::line(&Json {
-            matrices: &matrices,
-            notices: &notices,
-        }),
+        Format::Text => prose(&(text(&matrices) + &noted_below(&matrices.notices))),
+        Format::Json => json::line(&matrices),
     })
-}
-
-/// The result as JSON, see `docs/json.md`.
-#[derive(Serialize)]
-struct Json<'a> {
-    #[serde(flatten)]
-    matrices: &'a StateSpace,
-    /// Values outside the ranges of the model, as sentences.
-    notices: &'a [String],
 }
 
 fn check_axis(about: &About, axis: Option<&str>) -> Result<(), Failure> {
