@@ -3,6 +3,7 @@
 use std::fs;
 use std::io::Read;
 use std::path::Path;
+use std::process::{Command, Stdio};
 
 use flate2::read::GzDecoder;
 
@@ -139,6 +140,18 @@ fn numbers_and_names_of_flags_are_checked() {
         &[&["simulate", "models/campaigns/axle_a_rig"][..], &slow].concat(),
         &said,
     );
+}
+
+/// As `head` does after some lines.
+#[test]
+fn a_reader_that_has_read_enough_of_a_message_is_no_reason_to_panic() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_qcar"))
+        .args(["frf", "no_such_model"])
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stderr.take());
+    assert_eq!(child.wait().unwrap().code(), Some(2));
 }
 
 /// A stiffness in N/mm without its unit.
