@@ -37,13 +37,17 @@ pub fn folder_for_results(name: &str) -> Result<PathBuf, String> {
     }
 }
 
+/// True if something has that name, be it a link to nothing.
+pub fn is_in_use(path: &Path) -> bool {
+    path.symlink_metadata().is_ok()
+}
+
 /// Checks that the file of the flag `--out` replaces no other.
 ///
 /// # Errors
 /// Fails if the name is in use.
 pub fn must_be_free(path: &Path) -> Result<(), Failure> {
-    // A link to nothing is a name in use too.
-    if path.symlink_metadata().is_err() {
+    if !is_in_use(path) {
         return Ok(());
     }
     let found = format!("{}, which exists already", path.display());

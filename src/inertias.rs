@@ -4,6 +4,7 @@ use qcar_dsl::expr::{Expr, Graph, Symbol};
 use qcar_dsl::model::CoordinateKind;
 use qcar_dsl::schedule::Compiled;
 use qcar_runtime::error::{InputError, Place, Problem};
+use qcar_runtime::shown::six_digits;
 
 /// The masses and inertias of a model, as expressions of its parameters.
 pub struct Inertias {
@@ -50,7 +51,7 @@ impl Inertias {
                 Problem::new(
                     format!("model {model}"),
                     place,
-                    value.to_string(),
+                    six_digits(value).to_string(),
                     "a value above zero",
                     remedy,
                 )

@@ -7,6 +7,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::files;
 use crate::progress;
+use crate::terminal::to_error;
 
 /// Exit status that shells report after Ctrl-C: 128 plus the number of the signal.
 const EXIT_STATUS: i32 = 130;
@@ -69,11 +70,11 @@ fn end() {
     let (parts, sentences) = (known.0.as_bytes(), &known.1);
     // A reader that has closed the pipe needs no more output.
     let _ = std::io::stdout().write_all(parts);
-    eprint!(
+    to_error(&format!(
         "interrupted{doing}; {}\n{sentences}{}",
         inventory(&written),
         unwritten.concat()
-    );
+    ));
     process::exit(EXIT_STATUS);
 }
 

@@ -5,6 +5,8 @@
 pub mod failure;
 // Reading and writing of files.
 pub mod files;
+// Folders of results, in which only a verb's own files are replaced.
+pub mod results;
 // Width and colours of the terminal.
 pub mod terminal;
 // The units in which results are shown.

@@ -20,7 +20,7 @@ fn main() -> ExitCode {
             match failure {
                 Failure::Finding(text) => print(&text, status),
                 Failure::Input(text) => {
-                    eprintln!("{}", terminal::complaint(text.trim_end()));
+                    terminal::to_error(&(terminal::complaint(text.trim_end()) + "\n"));
                     ExitCode::from(status)
                 }
             }
@@ -33,7 +33,7 @@ fn print(text: &str, status: u8) -> ExitCode {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            eprintln!("cannot write to standard output: {error}");
+            terminal::to_error(&format!("cannot write to standard output: {error}\n"));
             ExitCode::from(2)
         }
         _ => ExitCode::from(status),

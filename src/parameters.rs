@@ -15,6 +15,7 @@ use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::model::{self, About, Default};
 use qcar_runtime::response::parameters::{ParameterError, Values};
 use qcar_runtime::roles::{RoleError, Roles};
+use qcar_runtime::shown::six_digits;
 use qcar_runtime::spelling;
 
 use crate::failure;
@@ -30,7 +31,7 @@ pub struct Setting {
     /// Value, SI.
     value: f64,
     /// The unit as written, if it has one.
-    unit: Option<String>,
+    unit: Option<Declared>,
 }
 
 impl Setting {
@@ -48,9 +49,10 @@ impl FromStr for Setting {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (name, value) = text.split_once('=').ok_or("expected name=value, such as k_tm=6e5")?;
+        let named = text.split_once('=').filter(|(name, _)| !name.trim().is_empty());
+        let (name, value) = named.ok_or("expected name=value, such as k_tm=6e5")?;
         let number = value.trim().parse::<f64>().ok().filter(|v| v.is_finite());
-        let quantity = || Declared::quantity(value).map(|(value, unit)| (value, Some(unit.written)));
+        let quantity = || Declared::quantity(value).map(|(value, unit)| (value, Some(unit)));
         let (value, unit) = number.map(|value| (value, None)).or_else(quantity).ok_or_else(|| {
             format!("expected a number after `=`, and perhaps its unit such as N/mm, found `{value}`")
         })?;
@@ -219,17 +221,29 @@ fn is_answer(path: &Path) -> bool {
 
 /// A sentence for each value `p` outside the plausible range of the model, most often because of its unit.
 pub fn out_of_range(about: &About, p: &[f64]) -> Vec<String> {
-    let all = about.parameters.iter().zip(p);
-    let beyond = all.filter_map(|(parameter, &value)| {
+    beyond_ranges(about, about.parameters.iter().zip(p.iter().copied()))
+}
+
+/// The same for parameters of which some have no value: those in `stated`, by name.
+pub fn stated_out_of_range(about: &About, stated: &BTreeMap<String, f64>) -> Vec<String> {
+    let known = about.parameters.iter();
+    let known = known.filter_map(|own| Some((own, *stated.get(&*own.name)?)));
+    beyond_ranges(about, known)
+}
+
+/// The same for the values of a campaign.
+pub fn campaign_out_of_range(about: &About, campaign: &Campaign) -> Vec<String> {
+    let start = campaign.parameters.iter().map(|own| (own.name.clone(), own.value));
+    let stated = campaign.vehicle.iter().cloned().chain(start).collect();
+    stated_out_of_range(about, &stated)
+}
+
+fn beyond_ranges<'a>(about: &'a About, values: impl Iterator<Item = (&'a model::Parameter, f64)>) -> Vec<String> {
+    let beyond = values.filter_map(|(parameter, value)| {
         let (low, high) = parameter.range?;
-        let shown = |value| units::value(value, &parameter.unit);
-        let (name, unit, model) = (&parameter.name, units::name(&parameter.unit), &about.name);
-        let sentence = format!(
-            "{name} = {} {unit} is outside {} to {} {unit}, the plausible range of model {model}",
-            shown(value),
-            shown(low),
-            shown(high)
-        );
+        let (name, model) = (&parameter.name, &about.name);
+        let [value_shown, range] = [&[value][..], &[low, high]].map(|values| quoted(values, &parameter.unit, None));
+        let sentence = format!("{name} = {value_shown} is outside {range}, the plausible range of model {model}");
         (!(low..=high).contains(&value)).then_some(sentence)
     });
     beyond.collect()
@@ -245,12 +259,34 @@ pub fn require_in_range(about: &About, settings: &[Setting]) -> Result<(), Input
         let (low, high) = parameter
             .range
             .filter(|(low, high)| !(*low..=*high).contains(&own.value))?;
-        let (name, unit) = (format!("--set {}", own.name), &parameter.unit);
-        let expected = format!("a value from {low} to {high} {unit}, for which the model is declared");
+        let name = format!("--set {}", own.name);
+        let [found, range] =
+            [&[own.value][..], &[low, high]].map(|values| quoted(values, &parameter.unit, own.unit.as_ref()));
+        let expected = format!("a value from {range}, for which the model is declared");
         let remedy = "correct the value or its unit, or change `range` in the model";
-        Some(failure::flag(&name, format!("{} {unit}", own.value), &expected, remedy))
+        Some(failure::flag(&name, found, &expected, remedy))
     });
     InputError::unless_empty(outside.collect(), Some(()))
+}
+
+/// A value in the SI unit `si`, or the ends of a range, with the unit, as messages show them: in the unit in which the
+/// user wrote a value, otherwise in the shown one.
+pub fn quoted(values: &[f64], si: &str, written: Option<&Declared>) -> String {
+    let (unit, numbers): (&str, Vec<f64>) = match written {
+        Some(own) => (&own.written, values.iter().map(|value| own.shown(*value)).collect()),
+        None => (
+            units::name(si),
+            values.iter().map(|value| units::value(*value, si)).collect(),
+        ),
+    };
+    let numbers: Vec<String> = numbers
+        .into_iter()
+        .map(|number| six_digits(number).to_string())
+        .collect();
+    match unit {
+        "1" | "" => numbers.join(" to "),
+        unit => format!("{} {unit}", numbers.join(" to ")),
+    }
 }
 
 /// Parameters of the model that are estimated although the campaign does not mention them: those with a default and a
@@ -287,7 +323,8 @@ pub fn bound(parameters: &mut [campaign::Parameter], about: &About, campaign: &C
         let expected = match of_model.range {
             None => "`range = [lower, upper]`, because the model gives none".into(),
             Some((low, high)) if !(low..=high).contains(&own.value) => {
-                format!("`range = [lower, upper]`, or a value from {low} to {high}, the range of the model")
+                let range = quoted(&[low, high], &of_model.unit, None);
+                format!("`range = [lower, upper]`, or a value from {range}, the range of the model")
             }
             Some(range) => {
                 own.range = Some(range);
@@ -298,7 +335,8 @@ pub fn bound(parameters: &mut [campaign::Parameter], about: &About, campaign: &C
             .parameters
             .get(&own.name)
             .map_or(Place::File, |own| own.place.clone());
-        let found = format!("`fit = true` without a range, from {} {} on", own.value, own.unit);
+        let start = quoted(&[own.value], &own.unit, None);
+        let found = format!("`fit = true` without a range, from {start} on");
         let remedy = format!("add the range to [parameters.{}], or write `fit = false`", own.name);
         problems.push(Problem::new(campaign.manifest(), place, found, expected, remedy));
     }
@@ -392,10 +430,13 @@ fn wrong_settings(about: &About, settings: &[Setting]) -> Vec<Problem> {
         let parameter = about.parameters.iter().find(|parameter| *parameter.name == own.name)?;
         Some((parameter, own, own.unit.as_ref()?))
     });
-    let wrong = declared.filter(|(parameter, _, unit)| !is_like(unit, &parameter.unit));
+    let wrong = declared.filter(|(parameter, _, unit)| !unit.is_like(&parameter.unit));
     wrong
         .map(|(parameter, own, unit)| {
-            let (name, found) = (format!("--set {}", own.name), format!("a value in \"{unit}\""));
+            let (name, found) = (
+                format!("--set {}", own.name),
+                format!("a value in \"{}\"", unit.written),
+            );
             let remedy = "correct the unit, or leave it out for a value in SI";
             failure::flag(&name, found, &examples(&parameter.unit), remedy)
         })

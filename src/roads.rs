@@ -15,6 +15,8 @@ use crate::failure::flag;
 /// A random road of ISO 8608 or a measured profile, with speed and duration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RequestedRoad {
+    /// The text that names it, for messages.
+    written: String,
     ground: Ground,
     /// Speed, m/s.
     speed: f64,
@@ -76,6 +78,7 @@ impl FromStr for RequestedRoad {
             .transpose()?;
         let duration = duration.map(|(duration, _)| duration);
         Ok(Self {
+            written: text.into(),
             ground: Ground::of(ground.trim()).ok_or_else(expected)?,
             speed,
             duration,
@@ -115,7 +118,7 @@ impl RequestedRoad {
     /// A problem at the place where the road is named.
     fn problem(&self, found: String, expected: &str, remedy: &str) -> Problem {
         match &self.file {
-            None => flag("road", found, expected, remedy),
+            None => flag(&format!("--road {}", self.written), found, expected, remedy),
             Some(file) => Problem::new(file, Place::Name("roads".into()), found, expected, remedy),
         }
     }

@@ -11,6 +11,8 @@ use qcar_runtime::model::{
 use qcar_runtime::response::parameters::Values;
 use serde::Serialize;
 
+use crate::parameters::out_of_range;
+
 /// Rows of numbers.
 pub type Rows = Vec<Vec<f64>>;
 
@@ -31,6 +33,8 @@ pub struct StateSpace {
     pub parameters: Vec<String>,
     /// The value of every parameter, SI.
     pub values: BTreeMap<String, f64>,
+    /// Values outside the ranges of the model, as sentences.
+    pub notices: Vec<String>,
     /// A, B, C and D.
     #[serde(flatten)]
     pub matrices: BTreeMap<String, Rows>,
@@ -115,6 +119,7 @@ pub fn without_sensitivities(model: &dyn Model, values: &Values, axis: Option<&s
         outputs: keep.outputs.iter().map(|&at| output_name(&about.outputs[at])).collect(),
         parameters: leaders.map(|k| about.parameters[k].name.to_string()).collect(),
         values: names.zip(p.iter().copied()).collect(),
+        notices: out_of_range(about, p),
         matrices: matrices(model, p, &keep),
         sensitivities: BTreeMap::new(),
     }

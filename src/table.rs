@@ -119,6 +119,14 @@ pub fn noted(of: &[String]) -> String {
     of.iter().map(|notice| format!("note: {notice}\n")).collect()
 }
 
+/// Notices below a table, after an empty line; empty without any.
+pub fn noted_below(of: &[String]) -> String {
+    match noted(of) {
+        none if none.is_empty() => none,
+        notes => format!("\n{notes}"),
+    }
+}
+
 /// A count with its noun, in the plural unless it is 1.
 pub fn counted(count: usize, what: &str) -> String {
     let ending = if count == 1 { "" } else { "s" };

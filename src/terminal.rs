@@ -2,7 +2,7 @@
 //! environment variable COLUMNS or --color says otherwise.
 
 use std::env;
-use std::io::IsTerminal;
+use std::io::{IsTerminal, Write};
 use std::sync::OnceLock;
 
 use clap::ValueEnum;
@@ -131,6 +131,16 @@ pub fn complaint(text: &str) -> String {
     };
     let wrapped = error.wrapped(text);
     wrapped.split_inclusive('\n').map(marked).collect()
+}
+
+/// Writes notices to standard error, beside a result that has no place for them, such as CSV.
+pub fn aside(notices: &str) {
+    to_error(&outlets()[1].wrapped(notices));
+}
+
+/// Writes to standard error. A reader that has closed the pipe, such as `head`, needs no more of it; `eprint` would panic.
+pub fn to_error(text: &str) {
+    let _ = std::io::stderr().write_all(text.as_bytes());
 }
 
 /// A line in pieces of at most this number of characters, broken at spaces.

@@ -42,7 +42,7 @@ mod truth;
 
 pub use contents::{
     Axis, Campaign, Channel, ChannelMapping, Dynamometer, FACT_UNITS, FACTS, Parameter, Profile, Quantity, Recording,
-    Road, Role, RoleNames, Run, Side, Spacing, Sweep, Test, Trigger, Window, unit_of_fact,
+    Road, Role, RoleNames, Run, Side, Spacing, Sweep, Test, Trigger, Window, impossible_fact, unit_of_fact,
 };
 pub use curve::{Curve, DynamicCurve};
 pub use dynamometer::ForceTable;

@@ -66,7 +66,7 @@ impl Shown<'_> {
     }
 }
 
-/// A factor between units adds further digits, which say nothing.
-fn six_digits(value: f64) -> f64 {
+/// A value rounded to six digits: a factor between units adds further ones, which say nothing.
+pub fn six_digits(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
 }

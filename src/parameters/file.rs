@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use qcar_runtime::campaign::workbook::{Entry, Workbook, is_workbook};
-use qcar_runtime::campaign::{Declared, examples, unit_of_fact};
+use qcar_runtime::campaign::{Declared, examples, impossible_fact, unit_of_fact};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::spelling;
 use toml::Spanned;
@@ -273,9 +273,13 @@ impl Reader<'_> {
             self.refuse_unknown(&key, table);
         }
         let number = match table {
-            Some(table) => table.get("value").map(Spanned::get_ref),
-            None => Some(value.get_ref()),
+            Some(table) => table.get("value"),
+            None => Some(value),
         };
+        let written = number
+            .and_then(|number| self.text.get(number.span()))
+            .unwrap_or_default();
+        let number = number.map(Spanned::get_ref);
         let unit = table
             .and_then(|table| table.get("unit"))
             .and_then(|unit| unit.get_ref().as_str());
@@ -286,14 +290,23 @@ impl Reader<'_> {
             (Some(DeValue::String(text)), None) => self.quantity(offset, &key, text, kind)?,
             (number, unit) => {
                 let Some(finite) = number.and_then(finite) else {
-                    let found = number.map_or("no `value`", DeValue::type_str);
+                    let found = match number {
+                        Some(DeValue::Float(_)) => written,
+                        other => other.map_or("no `value`", DeValue::type_str),
+                    };
                     let remedy = "write a number in SI units, or in quotes a number and its unit";
                     self.wrong(offset, &key, found, "a finite number", remedy);
                     return None;
                 };
-                self.in_unit(offset, &key, finite, unit)?
+                self.in_unit(offset, &key, finite, unit, kind)?
             }
         };
+        if section == "vehicle"
+            && let Some((expected, remedy)) = impossible_fact(own, value)
+        {
+            self.wrong(offset, &key, written, expected, remedy);
+            return None;
+        }
         Some(Stated {
             value,
             unit,
@@ -322,20 +335,23 @@ impl Reader<'_> {
         quantity.map(|(value, unit)| (value, Some(unit.written)))
     }
 
-    /// The value of a number in its declared unit, in SI.
-    fn in_unit(&mut self, offset: usize, key: &str, value: f64, unit: Option<&str>) -> Option<(f64, Option<String>)> {
+    /// The value of a number in its declared unit, which is of this kind, in SI.
+    fn in_unit(
+        &mut self,
+        offset: usize,
+        key: &str,
+        value: f64,
+        unit: Option<&str>,
+        kind: Option<&str>,
+    ) -> Option<(f64, Option<String>)> {
         let Some(unit) = unit else {
             return Some((value, None));
         };
-        let Some(declared) = Declared::of(unit) else {
+        let declared = Declared::of(unit).filter(|own| kind.is_none_or(|kind| own.is_like(kind)));
+        let Some(declared) = declared else {
             let remedy = "write the unit of the value, such as N/m, N/mm, N s/m, kg, mm or 1";
-            self.wrong(
-                offset,
-                key,
-                &format!("the unit \"{unit}\""),
-                "a unit of mechanics",
-                remedy,
-            );
+            let expected = kind.map_or("a unit of mechanics".into(), examples);
+            self.wrong(offset, key, &format!("the unit \"{unit}\""), &expected, remedy);
             return None;
         };
         Some((declared.si(value), Some(declared.written)))

@@ -11,6 +11,7 @@ use crate::files::{folder_for_results, put};
 use crate::json;
 use crate::parameters::Setting;
 use crate::report::{Report, page};
+use crate::results::Results;
 use crate::terminal::prose;
 use crate::verbs::Format;
 use crate::verbs::frf::Frequencies;
@@ -82,9 +83,21 @@ pub struct Arguments {
     format: Format,
 }
 
+/// The files of a comparison.
+const RESULTS: Results = Results {
+    record: "compare.json",
+    names: ["/a/name", "/b/name"],
+    between: "beside",
+    files: &["parameters.csv", "transmissibility.csv", "cleat.csv", "report.html"],
+};
+
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let subject = Subject::of(&arguments.first, &arguments.second)?;
+    if let Some(folder) = &arguments.out {
+        let names = subject.names();
+        RESULTS.check(folder, names.each_ref().map(String::as_str), None)?;
+    }
     let comparison = gather::gather(&subject, arguments)?;
     let contents = contents::Contents::of(&comparison);
     let json = || json::line(&contents.result);

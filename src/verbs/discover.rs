@@ -22,8 +22,9 @@ use crate::completion;
 use crate::failure::Failure;
 use crate::files::{folder_for_results, put};
 use crate::interruption::{leave, note};
-use crate::parameters::{bound, check_campaign, own};
+use crate::parameters::{bound, campaign_out_of_range, check_campaign, own};
 use crate::progress::Showing;
+use crate::results::Results;
 use crate::terminal::prose;
 use crate::verbs::{Format, kc};
 use crate::workshop::{Bench, given};
@@ -51,7 +52,7 @@ mod unfinished;
 /// the catalogue at every place where they apply, and checks them on the `held_out` runs. The verdict is `none` if
 /// noise explains the residuals, `found`, `class` if several effects explain them equally well, or `unknown`.
 #[derive(Args)]
-#[command(after_help = "Example:\n  qcar discover models/campaigns/axle_a_rig --out results")]
+#[command(after_help = "Example:\n  qcar discover models/campaigns/axle_a_rig --out found")]
 pub struct Arguments {
     /// Folder with a campaign.toml
     campaign: PathBuf,
@@ -74,6 +75,8 @@ pub struct Arguments {
 pub struct Answer {
     /// Name of the campaign.
     pub campaign: String,
+    /// Name of the model with which the search began.
+    pub base_model: String,
     /// Its measured data.
     pub evidence: Evidence,
     /// Result of the search.
@@ -131,13 +134,49 @@ pub(crate) struct ExtendedModel {
 }
 
 impl ExtendedModel {
-    /// Writes the model file and stores its path.
-    fn write(&mut self, folder: &Path) -> Result<(), Failure> {
-        let name = format!("{}.axle", self.name);
-        put(folder, &name, &self.text)?;
-        self.file = Some(folder.join(name));
-        Ok(())
+    fn file_name(&self) -> String {
+        format!("{}.axle", self.name)
     }
+
+    /// Stores the path that the model file will have.
+    fn place(&mut self, folder: &Path) {
+        self.file = Some(folder.join(self.file_name()));
+    }
+
+    fn write(&self, folder: &Path) -> Result<(), InputError> {
+        put(folder, &self.file_name(), &self.text)
+    }
+}
+
+/// The files of a search.
+const RESULTS: Results = Results {
+    record: "discovery.json",
+    names: ["/model", "/campaign"],
+    between: "for",
+    files: &["parameters.toml", "gap.svg"],
+};
+
+/// Checks that a search for what a model lacks in a campaign replaces only results of its own.
+///
+/// # Errors
+/// Fails as [`Results::check`] does.
+pub(crate) fn check_folder(folder: &Path, model: &str, campaign: &str) -> Result<(), InputError> {
+    let extended = format!("{model}_");
+    let is_model = |name: &str| {
+        let begins = name.starts_with(&extended) || name.starts_with(law::FILE);
+        begins && name.ends_with(".axle")
+    };
+    let files = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut models: Vec<PathBuf> = files
+        .filter(|file| file.file_name().to_str().is_some_and(is_model))
+        .map(|file| file.path())
+        .collect();
+    models.sort();
+    RESULTS.check(
+        folder,
+        [model, campaign],
+        models.into_iter().chain(unfinished::foreign(folder)),
+    )
 }
 
 /// Parses factors on the assumptions of the search.
@@ -189,12 +228,17 @@ pub(crate) fn answer(
 ) -> Result<Answer, Failure> {
     let start = Instant::now();
     let bench = Bench::of_campaign(campaign, model)?;
+    let base_model = bench.model().about().name.to_string();
+    if let Some(folder) = out {
+        check_folder(folder, &base_model, &campaign.name)?;
+    }
     check_campaign(bench.model().about(), campaign)?;
     if kc::has_curves(campaign) {
         // A curve in a wrong unit would look like a missing effect, so the curves are checked first.
         kc::gradients(campaign)?;
     }
     let setting = setting(campaign, bench.model().about())?;
+    let outside = campaign_out_of_range(bench.model().about(), campaign);
     let showing = Showing::new();
     showing.step(format!("{}: reading", campaign.name));
     let mut evidence = Evidence::from_campaign(campaign, bench.model().about())?;
@@ -219,6 +263,7 @@ pub(crate) fn answer(
     let discovery =
         discovery.map_err(|error| Failure::Input(format!("{}: {error}\n", campaign.manifest().display())))?;
     evidence.notices.extend(offsets_of_the_model(&discovery));
+    evidence.notices.extend(outside);
     // Without sweeps that the model can be compared with, there are no places.
     let [before, after] = [0, 1].map(|of| with_nuisances(bench.clone(), &discovery.nuisances[of]));
     let sweeps = Sweeps::new(before.model(), &discovery.before.refit, &evidence).unwrap_or_default();
@@ -229,6 +274,7 @@ pub(crate) fn answer(
         learned: (discovery.learned.as_ref()).and_then(|learned| law::learned_model(before, learned)),
         model: found(after, &discovery),
         campaign: campaign.name.clone(),
+        base_model,
         evidence,
         discovery,
         seconds: start.elapsed().as_secs_f64(),
@@ -320,9 +366,16 @@ fn patched(mut bench: Bench, findings: &[Finding], why: &str) -> Option<Extended
 /// Fails if the folder cannot be written to.
 pub(crate) fn write(answer: &mut Answer, folder: &Path) -> Result<(), Failure> {
     if let Some(model) = &mut answer.model {
-        model.write(folder)?;
+        model.place(folder);
     }
     if let Some(learned) = &mut answer.learned {
+        learned.place(folder);
+    }
+    put(folder, "discovery.json", &render::json(answer))?;
+    if let Some(model) = &answer.model {
+        model.write(folder)?;
+    }
+    if let Some(learned) = &answer.learned {
         learned.write(folder)?;
     }
     let (campaign, discovery) = (&answer.campaign, &answer.discovery);
@@ -335,7 +388,6 @@ pub(crate) fn write(answer: &mut Answer, folder: &Path) -> Result<(), Failure> {
         &render::parameters(&heading, &discovery.after),
     )?;
     put(folder, "gap.svg", &answer.figure())?;
-    put(folder, "discovery.json", &render::json(answer))?;
     unfinished::remove(folder);
     Ok(())
 }

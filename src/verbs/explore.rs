@@ -133,6 +133,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let values = parameters::resolve(model.about(), files.map(PathBuf::as_path), &arguments.model.set)?;
     parameters::require_in_range(model.about(), &arguments.model.set)?;
     model.check_inertias(values.as_slice())?;
+    let notices = parameters::out_of_range(model.about(), values.as_slice());
     let design = design(arguments, model.about(), &values, drawn.map(|(posterior, _)| posterior))?;
     let possible = |p: &[f64]| model.check_inertias(p).err().map(|error| error.to_string());
     let ensemble = Ensemble {
@@ -149,6 +150,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         seed: arguments.seed,
         part: arguments.part,
         program: &program,
+        notices: &notices,
     };
     row_file::fill(&ensemble, &choice, &arguments.out)
 }

@@ -18,6 +18,7 @@ use crate::json;
 use crate::parameters;
 use crate::roads;
 use crate::state_space::{StateSpace, state_space, without_sensitivities};
+use crate::table::noted;
 
 // The tyre and road of an FMU whose tyre rolls.
 mod on_tyre;
@@ -145,9 +146,10 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     }
     let paths: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
     Ok(format!(
-        "{} written to {}\n{note}",
+        "{} written to {}\n{note}{}",
         compiled.about.name,
-        paths.join(" and ")
+        paths.join(" and "),
+        noted(&parameters::out_of_range(loaded.about(), values.as_slice()))
     ))
 }
 
@@ -180,7 +182,12 @@ fn stem(out: &Path, extension: &str) -> Result<String, Failure> {
         Some(stem) => Ok(stem.into()),
         None => {
             let (found, expected) = (out.display(), format!("a file that ends in .{extension}"));
-            let remedy = format!("write --out {}", out.with_extension(extension).display());
+            // A path such as `.` has no name that could get the ending.
+            let ended = match out.file_name() {
+                Some(_) => out.with_extension(extension),
+                None => out.join(format!("model.{extension}")),
+            };
+            let remedy = format!("write --out {}", ended.display());
             Err(flag("--out", found, &expected, &remedy).into())
         }
     }

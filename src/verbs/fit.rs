@@ -29,6 +29,7 @@ use crate::failure::{Failure, flag};
 use crate::files::folder_for_results;
 use crate::parameters::{bound, out_of_range, own};
 use crate::progress::while_counting;
+use crate::results::Results;
 use crate::terminal::prose;
 use crate::verbs::{Format, each_once};
 
@@ -63,7 +64,7 @@ mod records;
 /// bound of its range.
 #[derive(Args)]
 #[command(
-    after_help = "Examples:\n  qcar fit models/campaigns/axle_a_rig --out results\n  qcar fit models/campaigns/axle_a_rig --starts 4 --fix c_tire --channels pad_to_wheel,wheel_to_body\n  qcar fit models/campaigns/axle_a_rig --profile k_tire,c_tire\n  qcar fit models/campaigns/axle_a_rig --bootstrap 1000\n  qcar fit models/campaigns/silverbox --format json"
+    after_help = "Examples:\n  qcar fit models/campaigns/axle_a_rig --out fitted\n  qcar fit models/campaigns/axle_a_rig --starts 4 --fix c_tire --channels pad_to_wheel,wheel_to_body\n  qcar fit models/campaigns/axle_a_rig --profile k_tire,c_tire\n  qcar fit models/campaigns/axle_a_rig --bootstrap 1000\n  qcar fit models/campaigns/silverbox --format json"
 )]
 pub struct Arguments {
     /// Folder with a campaign.toml
@@ -118,12 +119,25 @@ impl Choices {
     }
 }
 
+/// The files of a fit.
+pub(crate) const RESULTS: Results = Results {
+    record: "fit.json",
+    names: ["/model", "/campaign"],
+    between: "fitted to",
+    files: &[
+        "parameters.toml",
+        "transmissibility.csv",
+        "transmissibility.svg",
+        workbook::FILE,
+    ],
+};
+
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let campaign = Campaign::open(&arguments.campaign)?;
     let model = catalogue::of_campaign(&campaign, arguments.choices.model.as_deref(), Wanted::Values)?;
     if let Some(folder) = &arguments.out {
-        files::check_folder(folder, &campaign.name, &model.about().name)?;
+        RESULTS.check(folder, [&model.about().name, &campaign.name], None)?;
     }
     if !is_by_transmissibilities(&campaign, model.about(), &arguments.choices) {
         return nonlinear::run(campaign, arguments);

@@ -18,8 +18,8 @@ use crate::catalogue;
 use crate::failure::{Failure, flag};
 use crate::json::{self, Ordered};
 use crate::parameters;
-use crate::table::{Table, number};
-use crate::terminal::prose;
+use crate::table::{Table, noted, noted_below, number};
+use crate::terminal::{aside, prose};
 use crate::units;
 use crate::verbs::{ModelArguments, TableFormat, each_once};
 
@@ -109,6 +109,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let response = FrequencyResponse {
         channels: responses.collect::<Result<_, Failure>>()?,
         model: model.about().name.to_string(),
+        notices: parameters::out_of_range(model.about(), values.as_slice()),
     };
     let values = response.channels.0.iter().map(|(_, channel)| channel);
     parameters::require_finite(
@@ -118,7 +119,10 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     Ok(match arguments.format {
         TableFormat::Text => prose(&text(&response, &frequency)),
         TableFormat::Json => json::line(&response),
-        TableFormat::Csv => csv(&response, &frequency),
+        TableFormat::Csv => {
+            aside(&noted(&response.notices));
+            csv(&response, &frequency)
+        }
     })
 }
 
@@ -126,6 +130,8 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
 #[derive(Serialize)]
 struct FrequencyResponse {
     model: String,
+    /// Values outside the ranges of the model, as sentences.
+    notices: Vec<String>,
     channels: Ordered<ChannelResponse>,
 }
 
@@ -341,7 +347,7 @@ fn text(of: &FrequencyResponse, frequency: &[f64]) -> String {
                 .collect(),
         );
     }
-    table.text()
+    table.text() + &noted_below(&of.notices)
 }
 
 fn csv(of: &FrequencyResponse, frequency: &[f64]) -> String {

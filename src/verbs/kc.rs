@@ -15,7 +15,7 @@ use serde::Serialize;
 use crate::catalogue::{self, Loaded};
 use crate::failure::Failure;
 use crate::json;
-use crate::parameters;
+use crate::parameters::{self, campaign_out_of_range};
 use crate::progress::while_counting;
 use crate::table::{Table, noted, number, or_dash};
 use crate::terminal::prose;
@@ -80,10 +80,15 @@ impl Gradient {
 
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
-    let campaign = Campaign::open(&arguments.campaign)?;
+    let mut campaign = Campaign::open(&arguments.campaign)?;
     let gradients = gradients(&campaign)?;
     if arguments.write {
         write::start_values(&campaign, &gradients)?;
+    }
+    // Gradients need no model, so one that cannot be read gives no note.
+    if let Ok((model, _)) = model(&campaign) {
+        let outside = campaign_out_of_range(model.about(), &campaign);
+        campaign.notices.extend(outside);
     }
     Ok(match arguments.format {
         Format::Text => prose(&(text(&gradients) + &noted(&campaign.notices))),

@@ -9,7 +9,7 @@ use crate::failure::{Failure, flag};
 use crate::json;
 use crate::parameters;
 use crate::state_space::{Rows, StateSpace, state_space, without_sensitivities};
-use crate::table::{Table, number};
+use crate::table::{Table, noted_below, number};
 use crate::terminal::prose;
 use crate::units;
 use crate::verbs::{Format, ModelArguments};
@@ -46,7 +46,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let matrices = evaluate(&*model, &values, arguments.axis.as_deref());
     parameters::require_finite(&about.name, matrices.matrices.values().flatten().flatten())?;
     Ok(match arguments.format {
-        Format::Text => prose(&text(&matrices)),
+        Format::Text => prose(&(text(&matrices) + &noted_below(&matrices.notices))),
         Format::Json => json::line(&matrices),
     })
 }

@@ -13,6 +13,8 @@ use crate::effects;
 use crate::failure::Failure;
 use crate::files::{must_be_free, put};
 use crate::parameters;
+use crate::table::noted;
+use crate::terminal::aside;
 
 /// Add an effect to a model and write the new model file
 ///
@@ -53,10 +55,12 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         .apply(&compiled.model, &arguments.at, &|name| values.get(name).copied())
         .map_err(|report| Failure::Input(report.to_string()))?;
     let text = patched.text(NO_EVIDENCE);
+    let notes = noted(&parameters::stated_out_of_range(&compiled.about, &values));
     let Some(path) = &arguments.out else {
+        aside(&notes);
         return Ok(text);
     };
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     put(path.parent().unwrap_or("".as_ref()), &name, &text)?;
-    Ok(format!("{} written to {}\n", patched.model.name, path.display()))
+    Ok(format!("{} written to {}\n{notes}", patched.model.name, path.display()))
 }

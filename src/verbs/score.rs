@@ -12,8 +12,8 @@ use qcar_runtime::fit::report::{ChannelFit, ParameterFit};
 use crate::catalogue;
 use crate::failure::Failure;
 use crate::interruption::keep;
-use crate::parameters;
-use crate::table::{Table, number, or_dash};
+use crate::parameters::{self, campaign_out_of_range};
+use crate::table::{Table, noted, number, or_dash};
 use crate::terminal::prose;
 use crate::units;
 use crate::verbs::fit::{self, Choices, Fitted};
@@ -31,8 +31,15 @@ pub struct Arguments {
     #[arg(required = true)]
     folders: Vec<PathBuf>,
     /// Allowed error of a well determined parameter, in percent
-    #[arg(long, value_name = "PERCENT", default_value_t = 3.0)]
+    #[arg(long, value_name = "PERCENT", default_value = "3", value_parser = percent, allow_hyphen_values = true)]
     within: f64,
+}
+
+/// An allowed error, written as percent.
+fn percent(text: &str) -> Result<f64, String> {
+    let number = text.trim().trim_end_matches('%').trim_end().parse::<f64>().ok();
+    let number = number.filter(|number| number.is_finite() && *number >= 0.0);
+    number.ok_or_else(|| format!("expected percent, zero or more, such as 3, found `{text}`"))
 }
 
 /// Runs the verb.
@@ -129,6 +136,7 @@ fn compare(of: &Fitted, truth: &Truth, within: f64) -> (String, bool) {
     if !of.fit.channels.is_empty() {
         text += &format!("\n{}", channels(&of.fit.channels));
     }
+    text += &noted(&campaign_out_of_range(of.model.about(), &of.campaign));
     (text, well)
 }
 

@@ -17,9 +17,10 @@ use crate::json;
 use crate::parameters::Setting;
 use crate::progress::while_counting;
 use crate::report::{Report, page};
+use crate::results::Results;
 use crate::roads;
-use crate::table::Table;
-use crate::terminal::prose;
+use crate::table::{Table, noted};
+use crate::terminal::{aside, prose};
 use crate::verbs::TableFormat;
 
 // The axle with its values and roads.
@@ -47,7 +48,7 @@ use uncertainty::{Temperatures, UncertaintySources};
 /// are given; its standard errors then give the uncertainty of each metric.
 #[derive(Args)]
 #[command(
-    after_help = "Examples:\n  qcar sensitivity models/campaigns/axle_a_rig --out results\n  qcar sensitivity axle_a --campaign models/campaigns/axle_a_rig --metrics body_x.peak,wheel_z.* --tolerance k_tire=5%\n  qcar sensitivity quarter_car --list"
+    after_help = "Examples:\n  qcar sensitivity models/campaigns/axle_a_rig --out sensitivities\n  qcar sensitivity axle_a --campaign models/campaigns/axle_a_rig --metrics body_x.peak,wheel_z.* --tolerance k_tire=5%\n  qcar sensitivity quarter_car --list"
 )]
 pub struct Arguments {
     /// A model, by name or path, a campaign's folder, or the folder of a fit's results
@@ -174,6 +175,14 @@ pub(crate) fn per_kelvin(text: &str) -> Result<f64, String> {
     })
 }
 
+/// The files of an analysis.
+const RESULTS: Results = Results {
+    record: "sensitivity.json",
+    names: ["/model", "/subject"],
+    between: "for",
+    files: &["sensitivity.csv", "sensitivity.svg", "report.html"],
+};
+
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let beneath = SubjectOptions {
@@ -183,6 +192,9 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         roads: &arguments.road,
     };
     let mut subject = Subject::of(&arguments.subject, &beneath)?;
+    if let Some(folder) = &arguments.out {
+        RESULTS.check(folder, [&subject.model.about().name, &subject.name], None)?;
+    }
     selection::keep_runs(&mut subject.courses, &arguments.runs)?;
     let mut ground = subject.ground();
     if arguments.list {
@@ -222,7 +234,10 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     Ok(match arguments.format {
         TableFormat::Text => prose(&render::text(&found)),
         TableFormat::Json => json::line(&found),
-        TableFormat::Csv => render::csv(&found),
+        TableFormat::Csv => {
+            aside(&noted(&found.notices));
+            render::csv(&found)
+        }
     })
 }
 

@@ -14,12 +14,14 @@ use qcar_runtime::tyre::Tyre;
 use crate::catalogue::{self, Loaded};
 use crate::completion;
 use crate::failure::Failure;
-use crate::files::folder_for_results;
+use crate::files::{folder_for_results, put};
 use crate::histories::{History, Kind};
 use crate::parameters::{self, Setting};
 use crate::progress::while_counting;
+use crate::results::Results;
 use crate::roads;
-use crate::terminal::prose;
+use crate::table::noted;
+use crate::terminal::{aside, prose};
 use crate::verbs::TableFormat;
 
 // Names of the files.
@@ -64,8 +66,9 @@ pub struct Arguments {
     /// duration, `:20s`
     #[arg(long, value_name = "ROAD@SPEED")]
     road: Vec<roads::RequestedRoad>,
-    /// Write the time histories into this folder, a file for each run, which replaces no file of the campaign. For a sweep or time history it has the measured
-    /// and the simulated signals, with an SVG; for a road there are power spectral densities too, as CSV and SVG
+    /// Write the time histories into this folder, a file for each run, and their errors as JSON; replaces only its own files. For
+    /// a sweep or time history a file has the measured and the simulated signals, with an SVG; for a road there are power
+    /// spectral densities too, as CSV and SVG
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
     /// Format of the files
@@ -105,6 +108,20 @@ pub enum VariantName {
     Vertical,
 }
 
+/// The files of simulated runs.
+const RUNS: Results = Results {
+    record: "simulation.json",
+    names: ["/model", "/campaign"],
+    between: "for",
+    files: &[],
+};
+
+/// The files of rides over roads.
+const ROADS: Results = Results {
+    record: "roads.json",
+    ..RUNS
+};
+
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     if !arguments.road.is_empty() {
@@ -116,16 +133,20 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         let files = names
             .all()
             .flat_map(|name| [arguments.kind.file(name), render::figure_of(name)]);
-        spare_records(&opened.campaign, folder, files)?;
+        check_folder(&RUNS, folder, (&opened.campaign, &opened.model), files.collect())?;
     }
     let simulated = simulated(opened, arguments.choices.variant)?;
     if let Some(folder) = &arguments.out {
+        put(folder, RUNS.record, &simulated.json())?;
         simulated.put(folder, arguments.kind)?;
     }
     Ok(match arguments.format {
         TableFormat::Text => prose(&simulated.result().text()),
         TableFormat::Json => simulated.json(),
-        TableFormat::Csv => simulated.result().csv(),
+        TableFormat::Csv => {
+            aside(&noted(&simulated.campaign.notices));
+            simulated.result().csv()
+        }
     })
 }
 
@@ -142,17 +163,37 @@ fn over_roads(arguments: &Arguments) -> Result<String, Failure> {
         let files = courses
             .iter()
             .flat_map(|course| ground::files(&course.name, arguments.kind));
-        spare_records(&campaign, folder, files)?;
+        check_folder(&ROADS, folder, (&campaign, &model), files.collect())?;
     }
     let rolled = ground::roll(&campaign, &model, &values, &courses, variant)?;
     if let Some(folder) = &arguments.out {
+        put(folder, ROADS.record, &rolled.json())?;
         rolled.put(folder, arguments.kind)?;
     }
     Ok(match arguments.format {
         TableFormat::Text => prose(&rolled.text()),
         TableFormat::Json => rolled.json(),
-        TableFormat::Csv => rolled.csv(),
+        TableFormat::Csv => {
+            aside(&noted(&campaign.notices));
+            rolled.csv()
+        }
     })
+}
+
+/// Checks that these files of simulated runs replace nothing but results of the same model and campaign, and no measured
+/// file of the campaign.
+///
+/// # Errors
+/// Fails as [`spare_records`] and [`Results::check`] do.
+fn check_folder(
+    results: &Results,
+    folder: &Path,
+    (campaign, model): (&Campaign, &Loaded),
+    files: Vec<String>,
+) -> Result<(), Failure> {
+    let paths: Vec<PathBuf> = files.iter().map(|file| folder.join(file)).collect();
+    spare_records(campaign, folder, files)?;
+    Ok(results.check(folder, [&model.about().name, &campaign.name], paths)?)
 }
 
 /// A campaign with its model and the parameter values.

@@ -4,14 +4,20 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap_complete::engine::ArgValueCompleter;
+use qcar_dsl::response::Wanted;
+use qcar_runtime::campaign::Campaign;
 
+use crate::catalogue;
 use crate::completion;
 use crate::failure::Failure;
 use crate::files::{folder_for_results, put};
+use crate::histories::Kind;
 use crate::json;
 use crate::report::{Report, page};
+use crate::results::Results;
 use crate::terminal::prose;
-use crate::verbs::Format;
+use crate::verbs::simulate::names::{FileNames, spare_records};
+use crate::verbs::{Format, discover, fit};
 
 // All verbs on one campaign.
 mod gather;
@@ -42,6 +48,8 @@ mod program;
 // The study for the report, and without curves for JSON.
 mod contents;
 
+use gather::{CURVES, DISCOVERY, ERRORS, FIT, GRADIENTS, TRACK};
+
 /// Fit, simulate and discover at once, and write a report
 ///
 /// Fits the model of a campaign to its rig runs, takes the gradients of its K&C curves, searches for what the model
@@ -63,8 +71,37 @@ pub struct Arguments {
     format: Format,
 }
 
+/// The files of a study besides those of its steps.
+const RESULTS: Results = Results {
+    record: "study.json",
+    names: ["/model", "/campaign"],
+    between: "for",
+    files: &["report.html", fit::workbook::FILE],
+};
+
+/// Checks that a study replaces nothing but its own results, and no measured file of the campaign.
+///
+/// # Errors
+/// Fails as [`Results::check`] and [`spare_records`] do, and if the campaign or its model cannot be read.
+fn check_folder(arguments: &Arguments) -> Result<(), Failure> {
+    let out = &arguments.out;
+    let campaign = Campaign::open(&arguments.campaign)?;
+    let model = catalogue::of_campaign(&campaign, arguments.model.as_deref(), Wanted::Nothing)?;
+    let names: [&str; 2] = [&model.about().name, &campaign.name];
+    RESULTS.check(out, names, None)?;
+    discover::check_folder(&out.join(DISCOVERY), names[0], names[1])?;
+    // The fit is written first, and says of what the files of the other steps are results.
+    let (runs, track) = (FileNames::of(&campaign), out.join(TRACK));
+    let rides: Vec<String> = runs.all().map(|name| Kind::Csv.file(name)).collect();
+    let rides_there = rides.iter().map(|file| track.join(file));
+    let others = [out.join(CURVES).join(GRADIENTS), track.join(ERRORS)];
+    fit::RESULTS.check(&out.join(FIT), names, rides_there.chain(others))?;
+    spare_records(&campaign, &track, rides)
+}
+
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
+    check_folder(arguments)?;
     let study = gather::gather(&arguments.campaign, arguments.model.as_deref(), &arguments.out)?;
     let contents = contents::Contents::of(&study);
     let json = json::line(&contents.result);

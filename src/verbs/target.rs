@@ -14,9 +14,10 @@ use crate::files::{folder_for_results, put};
 use crate::json;
 use crate::parameters::Setting;
 use crate::report::{Report, page};
+use crate::results::Results;
 use crate::terminal::prose;
-use crate::verbs::Format;
 use crate::verbs::sensitivity::subject::{Subject, SubjectOptions};
+use crate::verbs::{Format, fit};
 
 // The targets file.
 mod file;
@@ -44,7 +45,7 @@ use plan::Plan;
 /// and the parameters that may change, with ranges, steps, costs and couplings; docs/targets.md describes it. The exit
 /// status is 1 if no design is found that meets all targets.
 #[derive(Args)]
-#[command(after_help = "Example:\n  qcar target models/targets/axle_a.toml --out results")]
+#[command(after_help = "Example:\n  qcar target models/targets/axle_a.toml --out design")]
 pub struct Arguments {
     /// A file with targets and parameters
     targets: PathBuf,
@@ -62,6 +63,14 @@ pub struct Arguments {
     format: Format,
 }
 
+/// The files of a design.
+const RESULTS: Results = Results {
+    record: "target.json",
+    names: ["/model", "/subject"],
+    between: "for",
+    files: &["parameters.toml", fit::workbook::FILE, "report.html"],
+};
+
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let read = Read::of(&arguments.targets)?;
@@ -75,6 +84,9 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         roads: &roads,
     };
     let subject = Subject::of(&read.subject(), &beneath)?;
+    if let Some(folder) = &arguments.out {
+        RESULTS.check(folder, [&subject.model.about().name, &subject.name], None)?;
+    }
     let mut ground = subject.ground();
     let plan = Plan::of(&read, &subject, &mut ground)?;
     let wanted = [read.file.front.is_some(), read.file.space.is_some()];

@@ -3,6 +3,7 @@
 use std::fs;
 use std::io::Read;
 use std::path::Path;
+use std::process::{Command, Stdio};
 
 use flate2::read::GzDecoder;
 
@@ -117,6 +118,41 @@ fn flags_that_contradict_each_other_are_refused() {
     assert!(!out.exists());
 }
 
+#[test]
+fn numbers_and_names_of_flags_are_checked() {
+    let score = ["score", "models/campaigns/axle_a_rig", "--within"];
+    for value in ["nan", "-5", "inf", "three"] {
+        let said = ["--within <PERCENT>", "expected percent, zero or more", value];
+        refused("", &[&score[..], &[value]].concat(), &said);
+    }
+    refused(
+        "",
+        &["frf", "quarter_car", "--set", "=3"],
+        &["--set", "expected name=value"],
+    );
+    let export = ["export", "quarter_car", "--as", "c", "--out", ".."];
+    refused("", &export, &["a file that ends in .c", "write --out ../model.c"]);
+    let slow = ["--road", "C@80km/h", "--road", "B@0km/h"];
+    let said = ["`--road B@0km/h`", "a speed of 0 m/s"];
+    refused(
+        "",
+        &[&["simulate", "models/campaigns/axle_a_rig"][..], &slow].concat(),
+        &said,
+    );
+}
+
+/// As `head` does after some lines.
+#[test]
+fn a_reader_that_has_read_enough_of_a_message_is_no_reason_to_panic() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_qcar"))
+        .args(["frf", "no_such_model"])
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stderr.take());
+    assert_eq!(child.wait().unwrap().code(), Some(2));
+}
+
 /// A stiffness in N/mm without its unit.
 #[test]
 fn values_outside_the_ranges_of_the_model_are_not_passed_on() {
@@ -142,6 +178,25 @@ fn values_outside_the_ranges_of_the_model_are_not_passed_on() {
         ],
         &said,
     );
+    // In the unit in which the user has written the value, or else in that of the results.
+    let export = ["export", "quarter_car", "--as", "c", "--out", &code];
+    let units: [(&[&str], &str); 3] = [
+        (
+            &["--set", "k_tire=20 N/mm"],
+            "found 20 N/mm, expected a value from 50 to 1000 N/mm, for",
+        ),
+        (
+            &["--set", "k_tire=0.02 kN/mm", "--units", "N/mm"],
+            "found 0.02 kN/mm, expected a value from 0.05 to 1 kN/mm",
+        ),
+        (
+            &["--set", "k_tire=20000", "--units", "N/mm"],
+            "found 20 N/mm, expected a value from 50 to 1000 N/mm, for",
+        ),
+    ];
+    for (set, said) in units {
+        refused("", &[&export[..], set].concat(), &["--set k_tire", said]);
+    }
     let sets = out("sets.csv");
     let explored = [
         "explore",
@@ -174,6 +229,44 @@ fn values_outside_the_ranges_of_the_model_are_not_passed_on() {
         ran.stdout,
         ran.stderr
     );
+}
+
+/// In a campaign and in a parameter file, with the line and the value as it stands there.
+#[test]
+fn gravity_is_that_of_a_planet() {
+    let folder = tempfile::tempdir().unwrap();
+    let own = folder.path().join("own");
+    copy(Path::new("models/campaigns/axle_a_rig"), &own);
+    let manifest = own.join("campaign.toml");
+    let text = fs::read_to_string(&manifest).unwrap();
+    let line = 1 + text.lines().position(|line| line == "gravity = 9.81").unwrap();
+    let campaign = own.to_str().unwrap();
+    let frf = ["frf", "quarter_car", "--params", "FILE"];
+    let magnitude = "the magnitude of the acceleration of gravity";
+    for value in ["0", "0.0", "-9.81", "1", "9810.0", "\"-1 g\""] {
+        fs::write(&manifest, text.replace("gravity = 9.81", &format!("gravity = {value}"))).unwrap();
+        let place = format!("campaign.toml, line {line}, column");
+        let said = [&place, &format!("found {value}, expected {magnitude}"), "leave it out"];
+        common::refused(&qcar(&["check", campaign]), &said);
+        common::refused(&qcar(&["frf", "axle_a", "--params", campaign]), &said);
+        let [_, found, remedy] = said;
+        let content = format!("[vehicle]\ngravity = {value}\n");
+        refused(&content, &frf, &["line 2, column 1, `vehicle.gravity`", found, remedy]);
+    }
+    fs::write(&manifest, text.replace("gravity = 9.81", "gravity = nan")).unwrap();
+    common::refused(&qcar(&["check", campaign]), &[&format!("line {line}"), "found nan"]);
+    refused(
+        "[vehicle]\ngravity = nan\n",
+        &frf,
+        &["line 2", "found nan, expected a finite number"],
+    );
+    refused(
+        "[vehicle]\ngravity = { value = 9.81, unit = \"kg\" }\n",
+        &frf,
+        &["line 2", "the unit \"kg\"", "of the kind of m/s^2"],
+    );
+    fs::write(&manifest, text.replace("gravity = 9.81", "gravity = \"1 g\"")).unwrap();
+    assert_eq!(qcar(&["check", campaign]).status, 0);
 }
 
 #[test]

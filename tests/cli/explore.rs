@@ -197,7 +197,19 @@ fn wishes_are_read_with_care() {
             "--vary k_tire=1..2",
             &["--vary k_tire", "for which the model is declared"],
         ),
-        ("--vary k_tire=1..2kg", &["--vary k_tire", "\"N/mm\""]),
+        (
+            "--vary k_tire=1..2N/mm",
+            &["found 1 to 2 N/mm, expected values from 50 to 1000 N/mm, for which"],
+        ),
+        (
+            "--vary k_tire=-90%..-80% --units N/mm",
+            &["found 22 to 44 N/mm, expected values from 50 to 1000 N/mm"],
+        ),
+        ("--vary k_tire=3..2N/mm", &["found 3 to 2 N/mm, expected a lower end"]),
+        (
+            "--vary k_tire=1..2kg",
+            &["--vary k_tire", "values in \"kg\"", "\"N/mm\""],
+        ),
         ("--vary k_tire=1", &["name=low..high"]),
         ("--vary k_tire=-1%..1% --vary k_tire=-2%..2%", &["the same name twice"]),
         ("--vary k_tire=-1%..1% --rides 20mm", &["HEIGHT@SPEED"]),

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use tempfile::TempDir;
 
-use crate::common::{copy, qcar, refused, succeeds};
+use crate::common::{copy, qcar, refused, run_line, succeeds};
 use crate::records::{campaign, parameter, pushed};
 
 /// A copy of the campaign in the repository whose file `file` has been through `change`.
@@ -101,16 +101,18 @@ fn a_check_of_a_campaign_refuses_what_its_other_verbs_refuse() {
     assert!(checked.contains("did you mean `wheel`?"), "{checked}");
 }
 
+/// A body that heaves and pitches.
+const TURNING: &str = "axle turning {\n    \"A body that turns\"\n    param m: kg = 2 in 1..10;\n    param j: kg m^2 = 1 in 0.1..10;\n    \
+    param k: N/m = 800 in 1..1e4;\n    direction z {\n        road pad;\n        mass body = m; inertia pitch = j;\n        \
+    link front: body + 1.3 m*pitch - pad { spring k; damper 3 N s/m; }\n        \
+    link rear: body - 1.1 m*pitch { spring 700 N/m; damper 3 N s/m; }\n    }\n}\n";
+
 /// A mass that turns has an angular acceleration, which no accelerometer measures.
 #[test]
 fn an_angle_is_no_displacement() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().to_str().unwrap();
-    let model = "axle turning {\n    \"A body that turns\"\n    param m: kg = 2 in 1..10;\n    param j: kg m^2 = 1 in 0.1..10;\n    \
-                 param k: N/m = 800 in 1..1e4;\n    direction z {\n        road pad;\n        mass body = m; inertia pitch = j;\n        \
-                 link front: body + 1.3 m*pitch - pad { spring k; damper 3 N s/m; }\n        \
-                 link rear: body - 1.1 m*pitch { spring 700 N/m; damper 3 N s/m; }\n    }\n}\n";
-    fs::write(folder.path().join("turning.axle"), model).unwrap();
+    fs::write(folder.path().join("turning.axle"), TURNING).unwrap();
     let file = folder.path().join("turning.axle");
     succeeds(&[
         "new",
@@ -158,4 +160,47 @@ fn a_true_value_that_the_model_lacks_is_not_passed_over() {
     let folder = changed("truth.toml", |text| text.replace("k_tm", "k_tmm"));
     let said = ["truth.toml, line", "parameters.k_tmm", "did you mean `k_tm`?"];
     refused(&qcar(&["score", folder.path().to_str().unwrap()]), &said);
+}
+
+/// By its unit, by its name, or because the model says so; a unit of a translation counts for more than a name.
+#[test]
+fn an_imported_angle_is_no_sensor() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("turning.axle"), TURNING).unwrap();
+    let angles = [
+        ("body_acc_z", "deg/s^2", "its unit is that of an angle"),
+        ("body_left_z", "rad", "its unit is that of an angle"),
+        ("body_right_z", "°/s", "its unit is that of an angle"),
+        ("wheel_z", "mrad", "its unit is that of an angle"),
+        ("body_yaw_z", "V", "its name means an angle"),
+        ("Aufbau Winkel z", "", "its name means an angle"),
+        ("pitch_acc_z", "m/s^2", "is an angle in the model"),
+        ("pitch_z", "V", "is an angle in the model"),
+    ];
+    let sensors = [("pad_z", "m/s^2"), ("body_roll_centre_z", "m/s^2")];
+    let channels = angles.iter().map(|(name, unit, _)| (*name, *unit)).chain(sensors);
+    let headings: Vec<String> = channels
+        .map(|(name, unit)| format!("{name} [{unit}]").replace(" []", ""))
+        .collect();
+    let row = |sample: usize| format!("{}{}\n", sample as f64 / 100.0, ",0.5".repeat(headings.len()));
+    let table: String = (0..100).map(row).collect();
+    let file = folder.path().join("turns.csv");
+    fs::write(file, format!("time [s],{}\n{table}", headings.join(","))).unwrap();
+    let ran = run_line(folder.path(), "import turns.csv --out rig --model turning.axle");
+    assert_eq!(ran.status, 0, "{}", ran.stderr);
+    let text = fs::read_to_string(folder.path().join("rig/campaign.toml")).unwrap();
+    for (name, _, why) in angles {
+        let told = ran
+            .stdout
+            .lines()
+            .find(|line| line.starts_with(&format!("{name}: no sensor, ")));
+        assert!(told.is_some_and(|line| line.contains(why)), "{name}: {}", ran.stdout);
+        assert!(text.contains(&format!("# {name:?}: ")), "{text}");
+    }
+    let known: Vec<&str> = text
+        .lines()
+        .filter_map(|line| line.strip_prefix("location = "))
+        .collect();
+    assert_eq!(known, ["\"pad\"", "\"body\""]);
+    assert!(text.contains("# location = \"pad\" # of pad, body\n"), "{text}");
 }

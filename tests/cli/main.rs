@@ -24,6 +24,7 @@ mod noisy_inputs;
 mod outputs;
 mod plans;
 mod published;
+mod ranges;
 mod readme;
 mod records;
 mod rides;

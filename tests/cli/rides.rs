@@ -101,8 +101,8 @@ fn time_histories_are_written_run_by_run() {
     let columns = file.lines().next().unwrap().split(',').count();
     assert!(file.starts_with("time [s],z_body_acceleration [m/s^2],"));
     assert!(file.lines().all(|line| line.split(',').count() == columns));
-    // Of three sweeps a figure each too.
-    assert_eq!(fs::read_dir(&out).unwrap().count(), 3 + 2 * 3);
+    // Of three sweeps a figure each too, and the errors of all.
+    assert_eq!(fs::read_dir(&out).unwrap().count(), 3 + 2 * 3 + 1);
 }
 
 #[test]

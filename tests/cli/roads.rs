@@ -297,10 +297,13 @@ fn a_ride_is_asked_for_once_by_every_verb() {
     fs::write(&targets, text).unwrap();
     let twins = ["--road", "C@36km/h", "--road", "C@10m/s"];
     for (arguments, place) in [
-        (&[&["simulate", AXLE][..], &twins].concat(), "command line, `road`: "),
+        (
+            &[&["simulate", AXLE][..], &twins].concat(),
+            "command line, `--road C@10m/s`: ",
+        ),
         (
             &[&["sensitivity", "axle_a", "--campaign", AXLE][..], &twins].concat(),
-            "command line, `road`: ",
+            "command line, `--road C@10m/s`: ",
         ),
         (&vec!["target", targets.to_str().unwrap()], "targets.toml, `roads`: "),
     ] {

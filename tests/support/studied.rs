@@ -11,7 +11,7 @@ pub const COLUMNS: usize = 100;
 
 /// The line that [`Studied::targets`] runs once for all tests, as users are told to write it.
 #[allow(dead_code, reason = "not every test program runs the lines that users are told")]
-pub const TARGETS: &str = "target models/targets/axle_a.toml --out results";
+pub const TARGETS: &str = "target models/targets/axle_a.toml --out design";
 
 /// A shipped campaign studied, or targets met.
 pub struct Studied {

@@ -24,6 +24,27 @@ pub fn unit_of_fact(name: &str) -> Option<&'static str> {
     facts.filter(|(fact, _)| *fact == name).map(|(_, unit)| unit).next()
 }
 
+/// Expected value and remedy for vehicle data that cannot be (a value in SI); `None` for a possible value.
+///
+/// An axle stands on its tyre, so neither gravity nor the load of the tyre is zero. The limits of gravity lie beyond those
+/// of the Moon (1.62 m/s^2) and of Jupiter (24.8 m/s^2), and leave out 1 for 1 g, and values in ft/s^2 or mm/s^2.
+pub fn impossible_fact(name: &str, value: f64) -> Option<(&'static str, &'static str)> {
+    let (is_possible, expected, remedy) = match name {
+        "gravity" => (
+            (1.5..=25.0).contains(&value),
+            "the magnitude of the acceleration of gravity, such as 9.81 in m/s^2",
+            "correct the value or its unit, such as \"1 g\", or leave it out",
+        ),
+        "static_tire_load" => (
+            value > 0.0,
+            "the load that the tyre carries, above zero",
+            "correct the value: a compressive load is positive",
+        ),
+        _ => return None,
+    };
+    (!is_possible).then_some((expected, remedy))
+}
+
 /// Contents of `campaign.toml`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Campaign {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::contents::{Campaign, Channel, Parameter, Profile, Road, RoleNames, Test, unit_of_fact};
+use super::contents::{Campaign, Channel, Parameter, Profile, Road, RoleNames, Test, impossible_fact, unit_of_fact};
 use super::fields::{Document, Section};
 use super::reading::RunData;
 use super::recorded::{self, Files};
@@ -74,7 +74,7 @@ fn campaign(folder: &Path, top: Section<'_>, files: &Files) -> Option<Campaign> 
     let model = workbook::model(&top, workbook.as_ref());
     let workbook = workbook.unwrap_or_default();
     let vehicle = top.section("vehicle");
-    let vehicle = vehicle.map_or(Vec::new(), |section| section.quantities(unit_of_fact));
+    let vehicle = vehicle.map_or(Vec::new(), |section| facts(&section));
     let roles = top.section("roles").map(|section| roles(&section)).unwrap_or_default();
     let parameters = top.section("parameters");
     let parameters = parameters.map_or(Some(Vec::new()), |section| parameters_of(&section));
@@ -114,6 +114,17 @@ fn campaign(folder: &Path, top: Section<'_>, files: &Files) -> Option<Campaign> 
         notices: Vec::new(),
         recorded: Vec::new(),
     })
+}
+
+/// The vehicle data, of which impossible values are refused.
+fn facts(section: &Section<'_>) -> Vec<(String, f64)> {
+    let facts = section.quantities(unit_of_fact);
+    for (name, value) in &facts {
+        if let Some((expected, remedy)) = impossible_fact(name, *value) {
+            section.wrong(name, section.written(name), expected, remedy);
+        }
+    }
+    facts
 }
 
 fn format(top: &Section<'_>) {

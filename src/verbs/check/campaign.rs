@@ -24,6 +24,7 @@ pub(super) fn verdict(folder: &Path) -> Result<(bool, String), Failure> {
     check_values(&campaign, &model)?;
     let findings = campaign.findings()?;
     let mut sentences = campaign.notices.clone();
+    sentences.extend(parameters::campaign_out_of_range(model.about(), &campaign));
     sentences.extend(sensors::unknown(model.about(), &campaign));
     for finding in &findings {
         let sentence = finding.to_string();

@@ -37,6 +37,16 @@ impl Subject {
             }
         }
     }
+
+    /// Names of the sides, as the user gave them.
+    pub fn names(&self) -> [String; 2] {
+        match self {
+            Subject::Models(names) => names.clone(),
+            Subject::Parameters(paths) | Subject::Campaigns(paths) => {
+                paths.each_ref().map(|path| path.display().to_string())
+            }
+        }
+    }
 }
 
 enum One {

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use qcar_dsl::patch::{Curve, NewParameter, Ordinate, ParameterRole, Patch};
 use qcar_runtime::discover::answer::{Finding, Learned};
+use qcar_runtime::error::InputError;
 
 use super::ExtendedModel;
-use crate::failure::Failure;
 use crate::files::put;
 use crate::table::number;
 use crate::workshop::Bench;
@@ -19,6 +19,9 @@ pub(crate) struct LearnedModel {
     /// The model with all laws.
     pub model: ExtendedModel,
 }
+
+/// Beginning of the names of effect files.
+pub(super) const FILE: &str = "learned_";
 
 /// A law at a place.
 pub(crate) struct Law {
@@ -81,24 +84,28 @@ fn law(patch: &Patch, finding: &Finding, declared: &[NewParameter], longest: f64
             .iter()
             .map(|own| (own.effect_name.clone(), own.unit.to_string()))
             .collect(),
-        name: format!("learned_{}_at_{}.axle", finding.effect, finding.at),
+        name: format!("{FILE}{}_at_{}.axle", finding.effect, finding.at),
         text: patch.text_at(&parameters),
         file: None,
     }
 }
 
 impl LearnedModel {
+    /// Stores the paths that the files will have.
+    pub(super) fn place(&mut self, folder: &Path) {
+        self.model.place(folder);
+        for law in &mut self.laws {
+            law.file = Some(folder.join(&law.name));
+        }
+    }
+
     /// Writes the model and an effect file for each law.
     ///
     /// # Errors
     /// Fails if the folder cannot be written to.
-    pub(super) fn write(&mut self, folder: &Path) -> Result<(), Failure> {
+    pub(super) fn write(&self, folder: &Path) -> Result<(), InputError> {
         self.model.write(folder)?;
-        for law in &mut self.laws {
-            put(folder, &law.name, &law.text)?;
-            law.file = Some(folder.join(&law.name));
-        }
-        Ok(())
+        self.laws.iter().try_for_each(|law| put(folder, &law.name, &law.text))
     }
 }
 

@@ -26,6 +26,8 @@ use crate::units;
 /// The answer as `docs/json.md` describes it.
 #[derive(Serialize)]
 pub(crate) struct Result<'a> {
+    campaign: &'a str,
+    model: &'a str,
     verdict: Verdict,
     /// Probability of the answer.
     probability: Option<f64>,
@@ -123,6 +125,8 @@ pub(super) fn json(of: &Answer) -> String {
 pub(crate) fn result(of: &Answer) -> Result<'_> {
     let (before, after) = (&of.discovery.before.misfit, &of.discovery.after.misfit);
     Result {
+        campaign: &of.campaign,
+        model: &of.base_model,
         verdict: of.discovery.verdict,
         probability: of.discovery.probability,
         candidates: &of.discovery.candidates,

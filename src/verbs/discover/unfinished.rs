@@ -48,6 +48,13 @@ pub(super) fn remove(out: &Path) {
     let _ = fs::remove_dir(folder);
 }
 
+/// Files of these names in that folder that no search has left.
+pub(super) fn foreign(out: &Path) -> impl Iterator<Item = PathBuf> {
+    let folder = folder(out);
+    let files = [PARAMETERS, FIGURE].map(|name| folder.join(name)).into_iter();
+    files.filter(|file| !is_unfinished(file))
+}
+
 /// True for a file with one of these names that carries the mark.
 fn is_unfinished(file: &Path) -> bool {
     let is_model = file.extension().is_some_and(|extension| extension == MODEL);

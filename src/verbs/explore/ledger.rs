@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use super::part::Part;
 use super::sink::unfinished;
-use crate::files::put;
+use crate::files::{is_in_use, put};
 use crate::json::Ordered;
 
 /// All inputs on which a row depends.
@@ -64,6 +64,8 @@ pub(super) struct Choice<'a> {
     pub part: Part,
     /// Version of the program that computes them.
     pub program: &'a str,
+    /// Notices on the values, as sentences.
+    pub notices: &'a [String],
 }
 
 impl Ledger {
@@ -108,6 +110,13 @@ impl Ledger {
         }
         if path.exists() {
             return Ok(FileState::Done);
+        }
+        // The description of results that were removed may be replaced.
+        let is_description = there.is_some_and(|there| there.get("columns").is_some());
+        if is_in_use(&beside) && !is_description {
+            let expected = "a name for the description of the results that is not in use";
+            let remedy = "choose another file, or move this one away";
+            return Err(Problem::new(beside, Place::File, "a file of another origin", expected, remedy).into());
         }
         let folder = path.parent().unwrap_or(Path::new(""));
         let name = beside.file_name().and_then(|name| name.to_str()).unwrap_or_default();

@@ -12,7 +12,7 @@ use super::sink::{Sink, unfinished};
 use crate::failure::Failure;
 use crate::interruption;
 use crate::progress::Showing;
-use crate::table::counted;
+use crate::table::{counted, noted};
 use crate::units;
 
 /// Rows of a block for each thread: enough to keep all threads busy, and little memory.
@@ -41,12 +41,13 @@ pub(super) fn fill<M: Model + ?Sized>(
     let rows = (sets.end - sets.start) * each;
     let ledger = Ledger::new(ensemble, choice, &headings, rows);
     let text = format!(
-        "{}: {} of {}, {} in {}\n",
+        "{}: {} of {}, {} in {}\n{}",
         ensemble.model.about().name,
         counted((sets.end - sets.start) as usize, "set"),
         choice.scheme,
         counted(rows as usize, "row"),
-        path.display()
+        path.display(),
+        noted(choice.notices)
     );
     if ledger.file_state(path)? == FileState::Done {
         return Ok(text + "note: the file was already complete\n");

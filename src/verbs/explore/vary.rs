@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::str::FromStr;
 
-use qcar_runtime::campaign::{Declared, dimension, examples};
+use qcar_runtime::campaign::{Declared, examples};
 use qcar_runtime::ensemble::Axis;
 use qcar_runtime::error::{InputError, Problem};
 use qcar_runtime::model::{About, Parameter};
@@ -11,6 +11,7 @@ use qcar_runtime::response::parameters::Values;
 use qcar_runtime::spelling;
 
 use crate::failure;
+use crate::parameters::quoted;
 
 /// `name=low..high`; the bounds may have a unit or be in percent of the value.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,8 +26,8 @@ pub(super) struct Vary {
 enum Unit {
     /// The unit of the parameter, SI.
     Own,
-    /// Another unit of its kind, with its SI unit.
-    Declared(String),
+    /// Another unit of its kind.
+    Declared(Declared),
     /// Percent of the value.
     Percent,
 }
@@ -68,7 +69,7 @@ fn ends(low: &str, high: &str) -> Option<([f64; 2], Unit)> {
                 .0
         }
     };
-    Some(([low, high], Unit::Declared(unit.coherent)))
+    Some(([low, high], Unit::Declared(unit)))
 }
 
 /// The axes of a design for a model with these values of the other parameters.
@@ -127,9 +128,9 @@ fn axis(about: &About, values: &Values, own: &Vary) -> Result<Axis, Box<Problem>
         return Err(wrong(own, &found, "a parameter that is not tied to another", &remedy).into());
     }
     if let Unit::Declared(unit) = &own.unit
-        && dimension(unit) != dimension(&parameter.unit)
+        && !unit.is_like(&parameter.unit)
     {
-        let found = format!("values in \"{unit}\" or a multiple of it");
+        let found = format!("values in \"{}\"", unit.written);
         let remedy = "correct the unit, or leave it out for values in SI";
         return Err(wrong(own, &found, &examples(&parameter.unit), remedy).into());
     }
@@ -142,14 +143,19 @@ fn axis(about: &About, values: &Values, own: &Vary) -> Result<Axis, Box<Problem>
 }
 
 fn check(own: &Vary, parameter: &Parameter, (low, high): (f64, f64)) -> Result<(), Box<Problem>> {
-    let (found, unit) = (format!("{low} to {high} {}", parameter.unit), &parameter.unit);
+    let written = match &own.unit {
+        Unit::Declared(unit) => Some(unit),
+        Unit::Own | Unit::Percent => None,
+    };
+    let shown = |ends: [f64; 2]| quoted(&ends, &parameter.unit, written);
+    let found = shown([low, high]);
     if low >= high {
         let expected = "a lower end below the upper one";
         return Err(wrong(own, &found, expected, "write the lower end first").into());
     }
     match parameter.range {
         Some((least, most)) if low < least || high > most => {
-            let expected = format!("values from {least} to {most} {unit}, for which the model is declared");
+            let expected = format!("values from {}, for which the model is declared", shown([least, most]));
             Err(wrong(
                 own,
                 &found,

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use nalgebra::Complex;
-use qcar_runtime::error::{InputError, Place, Problem};
+use qcar_runtime::error::InputError;
 use qcar_runtime::fit::Level;
 use qcar_runtime::fit::observation::Observation;
 use qcar_runtime::fit::report::ParameterFit;
@@ -15,46 +15,18 @@ use crate::figure::{Across, Curve, Figure, Panel, Style};
 use crate::files::put;
 use crate::units;
 
-/// Refuses a folder with the results of another model or campaign.
-///
-/// # Errors
-/// Fails for such a folder.
-pub(crate) fn check_folder(folder: &Path, campaign: &str, model: &str) -> Result<(), InputError> {
-    let file = folder.join("fit.json");
-    let Ok(text) = std::fs::read_to_string(&file) else {
-        return Ok(());
-    };
-    let there: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
-    let name = |key: &str| there[key].as_str().unwrap_or("something else").to_string();
-    let (other_model, other_campaign) = (name("model"), name("campaign"));
-    if (other_model.as_str(), other_campaign.as_str()) == (model, campaign) {
-        return Ok(());
-    }
-    let found = format!("results of {other_model} fitted to {other_campaign}");
-    let expected = format!("a new folder, or results of {model} fitted to {campaign}");
-    Err(Problem::new(
-        file,
-        Place::File,
-        found,
-        expected,
-        "choose another folder, or remove them",
-    )
-    .into())
-}
-
 /// Writes values, curves and a figure.
 ///
 /// # Errors
-/// Fails if the folder cannot be written to, and as [`check_folder`] does.
+/// Fails if the folder cannot be written to.
 pub(crate) fn write(of: &Fitted, folder: &Path) -> Result<(), InputError> {
-    check_folder(folder, &of.campaign.name, &of.fit.model)?;
     let compared = compare(of);
+    put(folder, "fit.json", &render::json(of))?;
     put(
         folder,
         "parameters.toml",
         &parameters(&of.fit.model, &of.campaign.name, &of.fit.parameters),
     )?;
-    put(folder, "fit.json", &render::json(of))?;
     put(folder, "transmissibility.csv", &csv(&compared))?;
     put(folder, "transmissibility.svg", &figure(of, &compared).svg())
 }

@@ -4,7 +4,7 @@ use qcar_runtime::error::InputError;
 use qcar_runtime::fit::report::{NoError, ParameterFit};
 
 use super::Fitted;
-use crate::table::number;
+use crate::parameters::quoted;
 use crate::verbs::kc::{self, Gradient};
 
 /// Relative change of another open parameter, to test whether the value from a curve depends on it.
@@ -53,9 +53,10 @@ fn adopt(fitted: &mut Fitted, gradient: &Gradient) -> Result<(), String> {
     let own = parameters.iter_mut().find(|own| own.name == name);
     let own = own.expect("the fit has not determined it");
     if let Some((low, high)) = own.range.filter(|(low, high)| !(*low..=*high).contains(&value)) {
-        let (test, value) = (gradient.test, number(value, 4));
+        let [value, range] = [&[value][..], &[low, high]].map(|values| quoted(values, &own.unit, None));
+        let test = gradient.test;
         return Err(kept(&format!(
-            "the K&C {test} curve gives {value}, outside its range {low} to {high}"
+            "the K&C {test} curve gives {value}, outside its range {range}"
         )));
     }
     let error = with.is_empty().then_some(gradient.uncertainty);

@@ -27,6 +27,7 @@ use qcar_runtime::spelling;
 use super::{Arguments, Choices, files, plan};
 use crate::failure::{Failure, flag};
 use crate::files::put;
+use crate::parameters::campaign_out_of_range;
 use crate::progress::{Showing, while_counting};
 use crate::terminal::prose;
 use crate::verbs::Format;
@@ -101,6 +102,8 @@ pub(crate) fn fit(mut campaign: Campaign, choices: &Choices) -> Result<Nonlinear
     drop(showing);
     let found = found.map_err(|error| Failure::Input(format!("{}: {error}\n", campaign.manifest().display())))?;
     campaign.notices.extend(evidence.notices.iter().cloned());
+    let outside = campaign_out_of_range(&about, &campaign);
+    campaign.notices.extend(outside);
     let profiles = profiles(bench.model(), &found.explanation.refit, &evidence, &choices.profile);
     Ok(Nonlinear {
         profiles,
@@ -230,7 +233,7 @@ impl Nonlinear {
     /// Fails if the folder cannot be written to.
     fn write(&self, folder: &Path) -> Result<(), InputError> {
         let values = files::parameters(&self.model, &self.campaign.name, &self.parameters);
-        put(folder, "parameters.toml", &values)?;
-        put(folder, "fit.json", &self.json())
+        put(folder, "fit.json", &self.json())?;
+        put(folder, "parameters.toml", &values)
     }
 }

@@ -1,7 +1,7 @@
 //! The sensor of a channel, from the words of its name and its unit.
 
 use qcar_runtime::campaign::{Axis, Quantity, RoleNames};
-use qcar_runtime::model::{About, StateKind};
+use qcar_runtime::model::{About, State, StateKind};
 use qcar_runtime::roles::Roles;
 use qcar_signals::si::in_si;
 use qcar_signals::signal::Signal;
@@ -78,6 +78,23 @@ const QUANTITIES: &[(&[&str], Quantity)] = &[
     (&["force", "load", "f", "kraft"], Quantity::Force),
 ];
 
+/// Words of a name that mean an angle or its rate.
+const ANGLES: [&str; 20] = [
+    "pitch", "roll", "yaw", "gyro", "angle", "ang", "angular", "rot", "rotation", "steer", "steering", "omega", "nick",
+    "nicken", "wank", "wanken", "gier", "gieren", "winkel", "drehrate",
+];
+
+/// Units of angles and of speeds of rotation, without their prefixes and powers of time.
+const OF_ANGLES: [&str; 10] = [
+    "rad", "mrad", "deg", "degree", "degrees", "°", "arcmin", "rpm", "rev", "U",
+];
+
+const UNIT_OF_ANGLE: &str =
+    "its unit is that of an angle, and a campaign has sensors of motion along an axis and of forces only";
+const NAME_OF_ANGLE: &str =
+    "its name means an angle, and a campaign has sensors of motion along an axis and of forces only";
+const ANGLE_OF_MODEL: &str = "what its name says is an angle in the model, and a campaign has sensors of motion along an axis and of forces only";
+
 /// Proposed sensor of a channel.
 #[derive(Clone, PartialEq)]
 pub(super) struct Guess {
@@ -98,8 +115,17 @@ impl Guess {
         // The channel's own name says more than that of its group.
         let words = [words(&signal.name), words(&signal.source.group)].concat();
         let stated = quantity_of(&signal.unit);
+        if is_of_angle(&signal.unit) {
+            return Err(UNIT_OF_ANGLE);
+        }
         if stated.is_none() && !matches!(signal.unit.as_str(), "" | "-" | "1" | "V" | "mV") {
             return Err("its unit is not that of an acceleration, velocity, displacement or force");
+        }
+        if words.iter().any(|word| names_angle(word, about)) {
+            return Err(ANGLE_OF_MODEL);
+        }
+        if stated.is_none() && words.iter().any(|word| ANGLES.contains(&word.as_str())) {
+            return Err(NAME_OF_ANGLE);
         }
         // Most sensors on a rig are accelerometers.
         let quantity = stated
@@ -140,11 +166,37 @@ pub(super) fn quantity_of(unit: &str) -> Option<Quantity> {
         .find(|own| in_si(own.unit()).is_some_and(|si| si.dimension == dimension))
 }
 
+/// True for a unit such as `deg`, `rad/s` or `U/min`.
+fn is_of_angle(unit: &str) -> bool {
+    let mut symbols = unit.split(|c: char| !c.is_alphabetic() && c != '°');
+    symbols.any(|symbol| OF_ANGLES.contains(&symbol))
+}
+
+/// True if the model has an angle of that name, in lower case, and no motion along an axis.
+fn names_angle(word: &str, about: &About) -> bool {
+    let is_named = |name: &str| name.to_lowercase() == word;
+    let coordinates = about.states.iter().filter(|state| state.kind == StateKind::Velocity);
+    let mut angles = coordinates.filter(|state| !moves_along_axis(state));
+    angles.any(|state| is_named(&state.location)) && !translating(about).any(is_named)
+}
+
+/// The masses and nodes of a model that move along an axis; all others turn.
+pub(super) fn translating(about: &About) -> impl Iterator<Item = &str> {
+    let moving = about.states.iter().filter(|state| state.kind == StateKind::Velocity);
+    moving
+        .filter(|state| moves_along_axis(state))
+        .map(|state| &*state.location)
+}
+
+fn moves_along_axis(state: &State) -> bool {
+    state.unit == "m/s"
+}
+
 /// A place of the model by its own name or by a common name, and true if it is the road.
 fn location(words: &[String], about: &About) -> Option<(String, bool)> {
     let roads = about.excitations.iter().map(|own| (&own.name, own.road));
-    let masses = about.states.iter().filter(|state| state.kind == StateKind::Velocity);
-    let mut known = roads.chain(masses.map(|state| (&state.location, false)));
+    let roads = roads.map(|(name, road)| (&**name, road));
+    let mut known = roads.chain(translating(about).map(|name| (name, false)));
     if let Some((name, road)) = known.find(|(name, _)| words.contains(&name.to_lowercase())) {
         return Some((name.to_string(), road));
     }

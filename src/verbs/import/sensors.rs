@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use qcar_runtime::model::{About, StateKind};
+use qcar_runtime::model::About;
 
 use super::Measured;
-use super::guess::Guess;
+use super::guess::{Guess, translating};
 use crate::table::Table;
 
 /// A sensor and its channel.
@@ -84,8 +84,7 @@ pub(super) fn sections(sensors: &Sensors, about: &About) -> String {
 
 /// A `[[channel]]` to be filled in, as a comment.
 fn form(source: &str, about: &About) -> String {
-    let masses = about.states.iter().filter(|state| state.kind == StateKind::Velocity);
-    let masses: BTreeSet<&str> = masses.map(|state| &*state.location).collect();
+    let masses: BTreeSet<&str> = translating(about).collect();
     let roads = about.excitations.iter().filter(|own| own.road).map(|own| &*own.name);
     let places: Vec<&str> = roads.chain(masses).collect();
     let place = places.first().copied().unwrap_or("body");

@@ -8,6 +8,7 @@ use toml::de::DeTable;
 
 use super::Gradient;
 use crate::files::{put, read_text};
+use crate::parameters::quoted;
 
 /// Replaces the value of each parameter of the campaign that a gradient determines.
 pub(super) fn start_values(campaign: &Campaign, gradients: &[Gradient]) -> Result<(), InputError> {
@@ -18,14 +19,17 @@ pub(super) fn start_values(campaign: &Campaign, gradients: &[Gradient]) -> Resul
         let name = gradient.parameter.as_deref().unwrap_or_default();
         let exact = gradient.parameter_value.unwrap_or(gradient.value);
         let value: f64 = format!("{exact:.4e}").parse().unwrap_or(exact);
+        let stated = value_of(&text, name);
         match campaign.parameter(name).and_then(|parameter| parameter.range) {
             Some((low, high)) if !(low..=high).contains(&value) => {
                 let place = Place::Name(format!("parameters.{name}.range"));
+                let unit = stated.as_ref().and_then(|(_, unit)| unit.as_ref());
+                let [value, range] = [&[value][..], &[low, high]].map(|values| quoted(values, gradient.unit, unit));
                 let expected = format!("a range that holds {value}, the gradient of the curve");
                 let remedy = "widen the range, or check the curve";
-                problems.push(Problem::new(&file, place, format!("[{low}, {high}]"), expected, remedy));
+                problems.push(Problem::new(&file, place, range, expected, remedy));
             }
-            _ => match value_of(&text, name) {
+            _ => match stated {
                 Some((place, unit)) => {
                     let stated: f64 = format!("{:.4e}", unit.map_or(value, |unit| unit.shown(value)))
                         .parse()
@@ -43,7 +47,8 @@ pub(super) fn start_values(campaign: &Campaign, gradients: &[Gradient]) -> Resul
 /// Values in a workbook stay unchanged.
 fn in_the_workbook(campaign: &Campaign, name: &str, value: f64) -> Problem {
     let unit = campaign.parameter(name).map_or("", |own| &own.unit);
-    let remedy = format!("write {value} {unit} into its cell of the workbook, or add [parameters.{name}]");
+    let value = quoted(&[value], unit, None);
+    let remedy = format!("write {value} into its cell of the workbook, or add [parameters.{name}]");
     let expected = format!("[parameters.{name}], whose value can be replaced");
     let place = Place::Name(format!("parameters.{name}"));
     Problem::new(

@@ -58,7 +58,7 @@ fn file_name(run: &Run) -> String {
 ///
 /// # Errors
 /// Fails with the first that would.
-pub(super) fn spare_records(
+pub(crate) fn spare_records(
     campaign: &Campaign,
     folder: &Path,
     files: impl IntoIterator<Item = String>,

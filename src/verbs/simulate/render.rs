@@ -18,7 +18,7 @@ use super::records::{Record, RecordError};
 use crate::files::put;
 use crate::histories::History;
 use crate::json;
-use crate::table::{Table, noted, number};
+use crate::table::{Table, noted_below, number};
 use crate::units;
 
 /// Unit of peaks and after-shakes.
@@ -183,11 +183,7 @@ note: {notice}
 
 /// Notices, and parameters that still have their start values, after an empty line; empty without any.
 pub(super) fn notes(notices: &[String], at_start: &[String]) -> String {
-    let noted = match noted(notices) {
-        none if none.is_empty() => none,
-        notes => format!("\n{notes}"),
-    };
-    format!("{noted}{}", guess(at_start))
+    format!("{}{}", noted_below(notices), guess(at_start))
 }
 
 fn guess(at_start: &[String]) -> String {

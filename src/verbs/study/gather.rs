@@ -22,6 +22,15 @@ use crate::verbs::fit::{self, Choices, Fitted};
 use crate::verbs::kc::{self, Gradient};
 use crate::verbs::simulate::{self, CleatResults};
 
+/// Subfolders of the steps: the fit, the K&C curves, the search, and the cleat runs.
+pub(super) const FIT: &str = "fit";
+pub(super) const CURVES: &str = "kc";
+pub(super) const DISCOVERY: &str = "discovery";
+pub(super) const TRACK: &str = "cleat";
+/// The gradients of the curves, and the errors of the cleat runs.
+pub(super) const GRADIENTS: &str = "gradients.json";
+pub(super) const ERRORS: &str = "errors.csv";
+
 /// Results of all verbs for a campaign.
 pub struct Study {
     /// The campaign, its model, and the fit.
@@ -73,10 +82,10 @@ pub struct Track {
 pub fn gather(folder: &Path, model: Option<&str>, out: &Path) -> Result<Study, Failure> {
     let begun = Instant::now();
     let fitted = fit::fit(folder, &Choices::of_model(model))?;
-    fit::files::write(&fitted, &out.join("fit"))?;
+    fit::files::write(&fitted, &out.join(FIT))?;
     let campaign = &fitted.campaign;
     let gradients = gradients(campaign, out)?;
-    let discovery = out.join("discovery");
+    let discovery = out.join(DISCOVERY);
     let mut answer = discover::answer(campaign, model, Some(&discovery), Numbers::default())?;
     discover::write(&mut answer, &discovery)?;
     let after = after(campaign, &answer)?;
@@ -97,7 +106,7 @@ fn gradients(campaign: &Campaign, out: &Path) -> Result<Vec<Gradient>, InputErro
         return Ok(Vec::new());
     }
     let gradients = kc::gradients(campaign)?;
-    put(&out.join("kc"), "gradients.json", &json::line(&gradients))?;
+    put(&out.join(CURVES), GRADIENTS, &json::line(&gradients))?;
     Ok(gradients)
 }
 
@@ -139,11 +148,11 @@ fn track(fitted: &Fitted, after: Option<&After>, out: &Path) -> Result<Option<Tr
         cleats,
     };
     let (about, driven) = (best.0.about(), track.after.as_ref().unwrap_or(&track.before));
-    let folder = out.join("cleat");
+    let folder = out.join(TRACK);
     let names = simulate::names::FileNames::of(campaign);
     for history in simulate::render::histories(about, &names, &track.cleats, &driven.rides) {
         history.put(&folder, Kind::Csv)?;
     }
-    put(&folder, "errors.csv", &simulate::render::csv(&driven.compared))?;
+    put(&folder, ERRORS, &simulate::render::csv(&driven.compared))?;
     Ok(Some(track))
 }

@@ -4,10 +4,11 @@ use std::path::Path;
 
 use qcar_signals::signal::{Recording, Scalar, Value};
 
-use super::super::contents::{FACT_UNITS, FACTS};
+use super::super::contents::{FACT_UNITS, FACTS, impossible_fact};
 use super::super::unit::{Declared, examples};
 use super::{AXLES, Entry};
 use crate::error::{InputError, Place, Problem};
+use crate::shown::shown;
 
 /// The named cells and their problems.
 pub(super) struct Cells<'a> {
@@ -59,9 +60,20 @@ impl<'a> Cells<'a> {
         facts
             .filter_map(|(name, unit)| {
                 let stated = self.entry(&format!("{axle}.{name}"), name, Some(unit));
+                let stated = stated.filter(|own| self.is_possible(own));
                 stated.or_else(|| self.derived(axle, name))
             })
             .collect()
+    }
+
+    /// Refuses vehicle data that cannot be.
+    fn is_possible(&mut self, own: &Entry) -> bool {
+        let Some((expected, remedy)) = impossible_fact(&own.name, own.value) else {
+            return true;
+        };
+        let found = shown(own.value, &own.unit).to_string();
+        self.wrong(own.place.clone(), found, expected, remedy);
+        false
     }
 
     /// Half of the vehicle, the share of an axle, and the wheel load of the other one.
