@@ -68,7 +68,7 @@ fn answer<const N: usize>(folder: &Path, size: f64, rates: impl Fn([f64; N], f64
     serde_json::from_str(&succeeds(&["discover", folder.to_str().unwrap(), "--format", "json"])).unwrap()
 }
 
-/// Checks that one effect in this form is found, that it explains at least 99 % on the held-out run, and its parameters
+/// Checks that one effect is found, in this form if one is given, that it explains at least 99 % on the held-out run, and its parameters
 /// to 5 %.
 fn is_found(answer: &Value, effect: (&str, &str), form: Option<&str>, truth: &[(&str, f64)]) {
     assert_eq!(answer["verdict"], "found", "{answer}");
@@ -79,7 +79,7 @@ fn is_found(answer: &Value, effect: (&str, &str), form: Option<&str>, truth: &[(
         (own["name"].as_str(), own["at"].as_str()),
         (Some(effect.0), Some(effect.1))
     );
-    assert_eq!(own["form"].as_str(), form);
+    assert!(form.is_none() || own["form"].as_str() == form, "{own}");
     assert!(own["evidence"]["gap_closed"].as_f64().unwrap() > 0.99, "{own}");
     for (name, truth) in truth {
         let value = own["parameters"][name].as_f64().unwrap();
@@ -88,7 +88,8 @@ fn is_found(answer: &Value, effect: (&str, &str), form: Option<&str>, truth: &[(
 }
 
 /// A mass of 0.32 kg that swings at 11 Hz on the 4 kg splits the resonance. The campaign's mass is five times the
-/// default of the model, of which such a mass may be no more than 70 %.
+/// default of the model, of which such a mass may be no more than 70 %. The mass of the body is fitted too, so a form of the
+/// effect that takes the mass from it is the same as one that adds the mass.
 #[test]
 fn a_mass_that_splits_the_resonance_is_found_from_far_away() {
     let folder = tempfile::tempdir().unwrap();
