@@ -1,0 +1,82 @@
+//! Sets with one effect less.
+
+use rayon::prelude::*;
+
+use super::assembly::{Hypothesis, Place, Placed};
+use super::fidelity::Fidelity;
+use super::finite_explanation;
+use super::race::{FINE_BUDGET, MOST_REPETITIONS, may_gain_more};
+use super::screen::Tangent;
+use super::set::Set;
+use crate::discover::answer::{Progress, Update};
+use crate::discover::observe::Evidence;
+
+/// Refits the set without each of its effects in turn, the last one included. From this start the remaining effects may
+/// reach a better optimum than the set that was extended.
+pub fn reductions(set: &Set, base: &Set, evidence: &Evidence, progress: Progress<'_>) -> Vec<Set> {
+    progress(Update::Step("fitting with one effect less"));
+    let refit = &set.explanation.refit;
+    let steady = evidence.minus(&refit.unsteady).with_step_limit();
+    let fitted = Fidelity::of(&steady).fine;
+    let start = Reduction {
+        set,
+        tangent: Tangent::new(refit, &set.assembly, &fitted),
+        fitted: &fitted,
+    };
+    let without = |left_out| start.without(left_out, base, &steady, evidence);
+    (0..set.assembly.effects().len())
+        .into_par_iter()
+        .filter_map(without)
+        .collect()
+}
+
+/// A set whose effects are left out in turn.
+struct Reduction<'a> {
+    set: &'a Set,
+    /// Its fit, linearised.
+    tangent: Tangent,
+    /// The runs that are fitted.
+    fitted: &'a Evidence,
+}
+
+impl Reduction<'_> {
+    /// The set without one of its effects, by position; `None` if it cannot be assembled or fitted.
+    fn without(&self, left_out: usize, base: &Set, steady: &Evidence, evidence: &Evidence) -> Option<Set> {
+        let effects = self.set.assembly.effects();
+        let others: Vec<&Placed> = effects[..left_out].iter().chain(&effects[left_out + 1..]).collect();
+        let assembly = base.assembly.with_all(&others)?;
+        let hypothesis = assembly.hypothesis();
+        let from = self.start_without(&effects[left_out], &hypothesis)?;
+        let mut refit = hypothesis.fit(&from, steady, FINE_BUDGET).ok()?;
+        for _ in 0..MOST_REPETITIONS {
+            if !may_gain_more(&refit) {
+                break;
+            }
+            refit = hypothesis.fit(&hypothesis.place(&refit), steady, FINE_BUDGET).ok()?;
+        }
+        let explanation = finite_explanation(&hypothesis, refit, evidence)?;
+        let share = self.set.log_prior * others.len() as f64 / effects.len() as f64;
+        Some(Set::new(assembly, explanation, share))
+    }
+
+    /// The optimum of the set as a start without one of its effects. The other unknowns take over the part of the effect
+    /// to first order if that leaves a smaller residual. Otherwise an effect that they imitate completely, such as a
+    /// gain of the input, would be kept if the motion is so sensitive that a fit from elsewhere ends in another local
+    /// minimum.
+    fn start_without(&self, effect: &Placed, hypothesis: &Hypothesis<'_>) -> Option<Place> {
+        let (explanation, refit) = (&self.set.explanation, &self.set.explanation.refit);
+        let here = self.set.assembly.hypothesis().place(refit);
+        let removal = effect.unknowns.removal(explanation);
+        let unknowns = removal.and_then(|removal| self.tangent.compensated(&removal));
+        let compensated = unknowns.map(|own| here.changed_by(&own, refit, self.set.assembly.model()));
+        let starts = [here].into_iter().chain(compensated).map(|mut place| {
+            place.errors.resize(hypothesis.sensor_errors(), 0.0);
+            place
+        });
+        let left = |place: &Place| {
+            let residual = hypothesis.residuals_at(place, refit, self.fitted);
+            residual.map_or(f64::INFINITY, |residual| residual.norm_squared())
+        };
+        starts.min_by(|a, b| left(a).total_cmp(&left(b)))
+    }
+}
