@@ -1,5 +1,6 @@
 //! Sets with one effect less.
 
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::assembly::{Hypothesis, Place, Placed};
@@ -10,6 +11,7 @@ use super::screen::Tangent;
 use super::set::Set;
 use crate::discover::answer::{Progress, Update};
 use crate::discover::observe::Evidence;
+use crate::least_squares::gram;
 
 /// Refits the set without each of its effects in turn, the last one included. From this start the remaining effects may
 /// reach a better optimum than the set that was extended.
@@ -67,7 +69,7 @@ impl Reduction<'_> {
         let (explanation, refit) = (&self.set.explanation, &self.set.explanation.refit);
         let here = self.set.assembly.hypothesis().place(refit);
         let removal = effect.unknowns.removal(explanation);
-        let unknowns = removal.and_then(|removal| self.tangent.compensated(&removal));
+        let unknowns = removal.and_then(|removal| compensated(self.tangent.white_jacobian(), &removal));
         let compensated = unknowns.map(|own| here.changed_by(&own, refit, self.set.assembly.model()));
         let starts = [here].into_iter().chain(compensated).map(|mut place| {
             place.errors.resize(hypothesis.sensor_errors(), 0.0);
@@ -78,5 +80,43 @@ impl Reduction<'_> {
             residual.map_or(f64::INFINITY, |residual| residual.norm_squared())
         };
         starts.min_by(|a, b| left(a).total_cmp(&left(b)))
+    }
+}
+
+/// Changes of all unknowns if some of them, by column of the Jacobian, change by these amounts and the others cancel as
+/// much of the change of the residuals as they can; `None` if the normal matrix of the others is singular.
+fn compensated(jacobian: &DMatrix<f64>, changed: &[(usize, f64)]) -> Option<DVector<f64>> {
+    let mut all = DVector::zeros(jacobian.ncols());
+    changed.iter().for_each(|&(column, change)| all[column] = change);
+    let is_other = |column: &usize| changed.iter().all(|(own, _)| own != column);
+    let others: Vec<usize> = (0..jacobian.ncols()).filter(is_other).collect();
+    let own = jacobian.select_columns(&others);
+    let step = gram(&own).cholesky()?.solve(&own.tr_mul(&(jacobian * &all)));
+    others.iter().zip(&step).for_each(|(&column, step)| all[column] = -step);
+    Some(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, DVector};
+
+    use super::compensated;
+
+    /// The first unknown acts as twice the third, but for one residual, and another is left out with it. The second is
+    /// orthogonal to both.
+    #[test]
+    fn what_other_unknowns_imitate_they_take_over() {
+        let jacobian = DMatrix::from_columns(&[
+            DVector::from_vec(vec![2.0, 4.0, 0.0, 0.0, 0.1]),
+            DVector::from_vec(vec![0.0, 0.0, 5.0, 0.0, 0.0]),
+            DVector::from_vec(vec![1.0, 2.0, 0.0, 0.0, 0.0]),
+            DVector::from_vec(vec![0.0, 0.0, 0.0, 7.0, 0.0]),
+        ]);
+        let change = compensated(&jacobian, &[(0, -3.0), (3, 0.0)]).unwrap();
+        assert!(
+            (&change - DVector::from_vec(vec![-3.0, 0.0, 6.0, 0.0])).norm() < 1e-12,
+            "{change}"
+        );
+        assert!(((&jacobian * change).norm() - 0.3).abs() < 1e-12);
     }
 }

@@ -243,19 +243,9 @@ impl Tangent {
         Some(change.norm_squared() - along.dot(&imitated))
     }
 
-    /// Changes of all unknowns if some of them, by column, are changed by these amounts and the others cancel as much of
-    /// the change of the residuals as they can; `None` if the normal matrix of the others is singular.
-    pub fn compensated(&self, changed: &[(usize, f64)]) -> Option<DVector<f64>> {
-        let columns = self.white_jacobian.ncols();
-        let mut all = DVector::zeros(columns);
-        changed.iter().for_each(|&(column, change)| all[column] = change);
-        let is_changed = |column: &usize| changed.iter().any(|(own, _)| own == column);
-        let others: Vec<usize> = (0..columns).filter(|column| !is_changed(column)).collect();
-        let jacobian = self.white_jacobian.select_columns(&others);
-        let along = jacobian.tr_mul(&(&self.white_jacobian * &all));
-        let step = gram(&jacobian).cholesky()?.solve(&along);
-        others.iter().zip(&step).for_each(|(&column, step)| all[column] = -step);
-        Some(all)
+    /// Derivatives of the residuals, whitened by the discrepancy.
+    pub fn white_jacobian(&self) -> &DMatrix<f64> {
+        &self.white_jacobian
     }
 
     /// Gain of the present unknowns and the discrepancy on this evidence, without a candidate.
