@@ -26,8 +26,8 @@ pub fn unit_of_fact(name: &str) -> Option<&'static str> {
 
 /// Expected value and remedy for vehicle data that cannot be (a value in SI); `None` for a possible value.
 ///
-/// An axle stands on its tyre, so neither gravity nor the load of the tyre is zero. The limits of gravity lie beyond those
-/// of the Moon (1.62 m/s^2) and of Jupiter (24.8 m/s^2), and leave out 1 for 1 g, and values in ft/s^2 or mm/s^2.
+/// A tyre pushes and does not pull; models take a load of 0 for one that stays linear. The limits of gravity lie beyond
+/// those of the Moon (1.62 m/s^2) and of Jupiter (24.8 m/s^2), and leave out 1 for 1 g, and values in ft/s^2 or mm/s^2.
 pub fn impossible_fact(name: &str, value: f64) -> Option<(&'static str, &'static str)> {
     let (is_possible, expected, remedy) = match name {
         "gravity" => (
@@ -36,8 +36,8 @@ pub fn impossible_fact(name: &str, value: f64) -> Option<(&'static str, &'static
             "correct the value or its unit, such as \"1 g\", or leave it out",
         ),
         "static_tire_load" => (
-            value > 0.0,
-            "the load that the tyre carries, above zero",
+            value >= 0.0,
+            "the load that the tyre carries, not negative",
             "correct the value: a compressive load is positive",
         ),
         _ => return None,

@@ -17,46 +17,58 @@ use crate::least_squares::gram;
 /// reach a better optimum than the set that was extended.
 pub fn reductions(set: &Set, base: &Set, evidence: &Evidence, progress: Progress<'_>) -> Vec<Set> {
     progress(Update::Step("fitting with one effect less"));
-    let refit = &set.explanation.refit;
-    let steady = evidence.minus(&refit.unsteady).with_step_limit();
-    let fitted = Fidelity::of(&steady).fine;
-    let start = Reduction {
-        set,
-        tangent: Tangent::new(refit, &set.assembly, &fitted),
-        fitted: &fitted,
-    };
-    let without = |left_out| start.without(left_out, base, &steady, evidence);
+    let reduction = Reduction::of(set, base, evidence);
     (0..set.assembly.effects().len())
         .into_par_iter()
-        .filter_map(without)
+        .filter_map(|left_out| reduction.without(left_out))
         .collect()
 }
 
 /// A set whose effects are left out in turn.
-struct Reduction<'a> {
+pub struct Reduction<'a> {
     set: &'a Set,
-    /// Its fit, linearised.
+    base: &'a Set,
+    evidence: &'a Evidence,
+    /// The fit of the set, linearised.
     tangent: Tangent,
-    /// The runs that are fitted.
-    fitted: &'a Evidence,
+    /// The evidence without the non-steady parts, and its runs that are fitted.
+    steady: Evidence,
+    fitted: Evidence,
 }
 
-impl Reduction<'_> {
+impl<'a> Reduction<'a> {
+    /// The reductions of a set of effects that were added to a base model.
+    pub fn of(set: &'a Set, base: &'a Set, evidence: &'a Evidence) -> Self {
+        let refit = &set.explanation.refit;
+        let steady = evidence.minus(&refit.unsteady).with_step_limit();
+        let fitted = Fidelity::of(&steady).fine;
+        Self {
+            set,
+            base,
+            evidence,
+            tangent: Tangent::new(refit, &set.assembly, &fitted),
+            steady,
+            fitted,
+        }
+    }
+
     /// The set without one of its effects, by position; `None` if it cannot be assembled or fitted.
-    fn without(&self, left_out: usize, base: &Set, steady: &Evidence, evidence: &Evidence) -> Option<Set> {
+    pub fn without(&self, left_out: usize) -> Option<Set> {
         let effects = self.set.assembly.effects();
         let others: Vec<&Placed> = effects[..left_out].iter().chain(&effects[left_out + 1..]).collect();
-        let assembly = base.assembly.with_all(&others)?;
+        let assembly = self.base.assembly.with_all(&others)?;
         let hypothesis = assembly.hypothesis();
         let from = self.start_without(&effects[left_out], &hypothesis)?;
-        let mut refit = hypothesis.fit(&from, steady, FINE_BUDGET).ok()?;
+        let mut refit = hypothesis.fit(&from, &self.steady, FINE_BUDGET).ok()?;
         for _ in 0..MOST_REPETITIONS {
             if !may_gain_more(&refit) {
                 break;
             }
-            refit = hypothesis.fit(&hypothesis.place(&refit), steady, FINE_BUDGET).ok()?;
+            refit = hypothesis
+                .fit(&hypothesis.place(&refit), &self.steady, FINE_BUDGET)
+                .ok()?;
         }
-        let explanation = finite_explanation(&hypothesis, refit, evidence)?;
+        let explanation = finite_explanation(&hypothesis, refit, self.evidence)?;
         let share = self.set.log_prior * others.len() as f64 / effects.len() as f64;
         Some(Set::new(assembly, explanation, share))
     }
@@ -76,7 +88,7 @@ impl Reduction<'_> {
             place
         });
         let left = |place: &Place| {
-            let residual = hypothesis.residuals_at(place, refit, self.fitted);
+            let residual = hypothesis.residuals_at(place, refit, &self.fitted);
             residual.map_or(f64::INFINITY, |residual| residual.norm_squared())
         };
         starts.min_by(|a, b| left(a).total_cmp(&left(b)))
