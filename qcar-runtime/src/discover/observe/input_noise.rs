@@ -204,11 +204,13 @@ mod tests {
         let truth: Vec<f64> = (0..1600).map(|k| (TAU * 0.5 * k as f64 / 400.0).sin()).collect();
         let speed = |signal: &[f64]| -> Vec<f64> { signal.windows(2).map(|pair| pair[1] - pair[0]).collect() };
         let mut random = SplitMix::new(3);
-        for _ in 0..20 {
+        let left = |random: &mut SplitMix| {
             let noisy: Vec<f64> = truth.iter().map(|own| own + 1e-3 * random.normal()).collect();
-            let [filtered, _] = without_noise(&noisy, false, FALSE_ALARM, &mut random);
-            let left = error(&speed(&truth), &speed(&filtered)) / error(&speed(&truth), &speed(&noisy));
-            assert!(left < 0.05, "{left}");
-        }
+            let [filtered, _] = without_noise(&noisy, false, FALSE_ALARM, random);
+            error(&speed(&truth), &speed(&filtered)) / error(&speed(&truth), &speed(&noisy))
+        };
+        // One false alarm is expected in twenty draws; there are more than three in two of a hundred such sets.
+        let alarms = (0..20).filter(|_| left(&mut random) > 0.05).count();
+        assert!(alarms <= 3, "{alarms} of 20");
     }
 }
