@@ -24,8 +24,6 @@ mod held_out;
 mod answers;
 // Verdict and most probable candidates.
 mod verdict;
-// Sets with one effect less.
-mod reduce;
 // Replacement of effects by their rivals.
 mod exchange;
 // Learned laws for effects that the catalogue lacks.
@@ -40,7 +38,7 @@ use std::sync::Arc;
 use rayon::iter::Either;
 use rayon::prelude::*;
 
-use assembly::{Assembly, Hypothesis, Place};
+use assembly::{Assembly, Hypothesis, Place, Placed};
 use detection_limit::detection_limits;
 use exchange::{exchanges, other_forms};
 use extend::extensions;
@@ -48,7 +46,7 @@ use fidelity::Fidelity;
 use first_law::FirstLaw;
 use held_out::supported_part;
 use probability::probabilities;
-use reduce::reductions;
+use race::{FINE_BUDGET, MOST_REPETITIONS, may_gain_more};
 use set::{Set, best_base, excess, explained_share, is_missing, keep_best, leaves_more_than_noise, most_probable};
 use verdict::conclude;
 
@@ -139,7 +137,7 @@ fn search(base: Set, mut known: Option<Set>, evidence: &Evidence, progress: Prog
         report(&sets[best(&sets)], evidence, progress);
     }
     // Remove effects that the evidence no longer supports beside those found later.
-    while let Some(place) = unreduced(&sets, evidence) {
+    while let Some(place) = unreduced(&sets) {
         sets[place].reduced = true;
         let less = reductions(&sets[place], &sets[0], evidence, progress);
         sets.extend(less);
@@ -304,12 +302,10 @@ fn unexchanged(sets: &[Set], evidence: &Evidence) -> Option<usize> {
     [best, supported_part(sets, best, evidence)].into_iter().find(open)
 }
 
-/// The most probable set or its part that the held-out runs support, if it has several effects and has not been fitted
-/// without each of them yet.
-fn unreduced(sets: &[Set], evidence: &Evidence) -> Option<usize> {
-    let open = |place: &usize| !sets[*place].reduced && sets[*place].assembly.effects().len() > 1;
+/// The most probable set, if it has several effects and has not been fitted without each of them yet.
+fn unreduced(sets: &[Set]) -> Option<usize> {
     let best = best(sets);
-    [best, supported_part(sets, best, evidence)].into_iter().find(open)
+    (!sets[best].reduced && sets[best].assembly.effects().len() > 1).then_some(best)
 }
 
 /// True if a learned law contradicts the named effects: it is at a place without a named effect, or it explains most of
@@ -401,4 +397,36 @@ fn setting_spread(assembly: &Assembly, spread: f64) -> std::collections::BTreeMa
 fn finite_explanation(hypothesis: &Hypothesis<'_>, refit: Refit, evidence: &Evidence) -> Option<Explanation> {
     let explanation = hypothesis.explanation(refit, evidence).ok()?;
     explanation.refit.log_evidence.is_finite().then_some(explanation)
+}
+
+/// Refits the set without each of its effects in turn, the last one included. From this start the remaining effects may
+/// reach a better optimum than the set that was extended.
+fn reductions(set: &Set, base: &Set, evidence: &Evidence, progress: Progress<'_>) -> Vec<Set> {
+    progress(Update::Step("fitting with one effect less"));
+    let without = |left_out| without(left_out, set, base, evidence);
+    (0..set.assembly.effects().len())
+        .into_par_iter()
+        .filter_map(without)
+        .collect()
+}
+
+/// The set without one of its effects, by position; `None` if it cannot be assembled or fitted.
+fn without(left_out: usize, set: &Set, base: &Set, evidence: &Evidence) -> Option<Set> {
+    let effects = set.assembly.effects();
+    let others: Vec<&Placed> = effects[..left_out].iter().chain(&effects[left_out + 1..]).collect();
+    let assembly = base.assembly.with_all(&others)?;
+    let hypothesis = assembly.hypothesis();
+    let mut from = set.assembly.hypothesis().place(&set.explanation.refit);
+    from.errors.truncate(base.assembly.hypothesis().sensor_errors());
+    let steady = evidence.minus(&set.explanation.refit.unsteady).with_step_limit();
+    let mut refit = hypothesis.fit(&from, &steady, FINE_BUDGET).ok()?;
+    for _ in 0..MOST_REPETITIONS {
+        if !may_gain_more(&refit) {
+            break;
+        }
+        refit = hypothesis.fit(&hypothesis.place(&refit), &steady, FINE_BUDGET).ok()?;
+    }
+    let explanation = finite_explanation(&hypothesis, refit, evidence)?;
+    let share = set.log_prior * others.len() as f64 / effects.len() as f64;
+    Some(Set::new(assembly, explanation, share))
 }
