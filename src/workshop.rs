@@ -139,8 +139,9 @@ impl Bench {
         patched.flat_map_iter(of_patch).collect()
     }
 
-    /// Removes forms that are equivalent to an earlier one in this model, also at another place: on a strut that is fixed to
-    /// the upright, friction between wheel and body is friction of the damper, whatever other link it is tried at.
+    /// Removes forms that are equivalent to an earlier one in this model, also at another place: on a strut that is
+    /// fixed to the upright, friction between wheel and body is friction of the damper, whatever other link it is tried
+    /// at.
     fn told_apart(&self, patch: &Patch, all: Vec<(Compiled, Patched)>) -> Vec<(Compiled, Patched)> {
         if patch.forms().next().is_none() {
             return all;

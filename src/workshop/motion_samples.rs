@@ -13,8 +13,8 @@ const SIZES: [f64; 2] = [1.0, 10.0];
 /// Difference from rounding, relative to the largest value at a point.
 const ROUNDING: f64 = 1e-9;
 
-/// The rates of all states and the outputs, on a resting and on a rolling tyre, at each point. A law on a rig whose motion
-/// is given shows in a measured force alone.
+/// The rates of all states and the outputs, on a resting and on a rolling tyre, at each point. On a rig that gives the
+/// motion, only the measured force shows a law.
 pub struct MotionSamples(Vec<Vec<f64>>);
 
 impl MotionSamples {

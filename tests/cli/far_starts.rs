@@ -68,8 +68,8 @@ fn answer<const N: usize>(folder: &Path, size: f64, rates: impl Fn([f64; N], f64
     serde_json::from_str(&succeeds(&["discover", folder.to_str().unwrap(), "--format", "json"])).unwrap()
 }
 
-/// Checks that one effect is found, in this form if one is given, that it explains at least 99 % on the held-out run, and its parameters
-/// to 5 %.
+/// Checks that one effect is found, in this form if one is given, that it explains at least 99 % on the held-out run, and
+/// its parameters to 5 %.
 fn is_found(answer: &Value, effect: (&str, &str), form: Option<&str>, truth: &[(&str, f64)]) {
     assert_eq!(answer["verdict"], "found", "{answer}");
     let [own] = answer["effects"].as_array().unwrap().as_slice() else {
@@ -88,8 +88,8 @@ fn is_found(answer: &Value, effect: (&str, &str), form: Option<&str>, truth: &[(
 }
 
 /// A mass of 0.32 kg that swings at 11 Hz on the 4 kg splits the resonance. The campaign's mass is five times the
-/// default of the model, of which such a mass may be no more than 70 %. The mass of the body is fitted too, so a form of the
-/// effect that takes the mass from it is the same as one that adds the mass.
+/// default of the model, of which such a mass may be no more than 70 %. The mass of the body is fitted too, so it makes no
+/// difference whether a form of the effect takes the mass from it or adds it.
 #[test]
 fn a_mass_that_splits_the_resonance_is_found_from_far_away() {
     let folder = tempfile::tempdir().unwrap();

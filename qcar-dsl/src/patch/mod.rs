@@ -237,8 +237,9 @@ impl Patch {
         }
     }
 
-    /// The model with the effect at a place, given by its label, in the first form whose conditions it meets. Starts and ranges that depend on
-    /// parameters of the model use their `values`, otherwise their defaults, otherwise the middle of their ranges.
+    /// The model with the effect at a place, given by its label, in the first form whose conditions it meets. Starts and
+    /// ranges that depend on parameters of the model use their `values`, otherwise their defaults, otherwise the middle
+    /// of their ranges.
     ///
     /// # Errors
     /// Fails if the effect does not apply at the place, if the model already has a name of the effect, if the patched
