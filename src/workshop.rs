@@ -95,7 +95,9 @@ impl Bench {
             .collect();
         let catalogue = Arc::new(effects::catalogue()?);
         let alone = Arc::new(alone(campaign));
-        Ok(Self::beside(compiled.model, catalogue, Arc::new(values), alone))
+        let fitted = campaign.parameters.iter().filter(|own| own.fit);
+        let model = compiled.model.estimating(fitted.map(|own| own.name.as_str()));
+        Ok(Self::beside(model, catalogue, Arc::new(values), alone))
     }
 
     /// The same with the amplitudes of a campaign, on which ranges of effects depend.

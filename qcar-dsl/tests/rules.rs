@@ -195,6 +195,40 @@ fn the_size_of_an_inner_state_is_seen_by_nobody() {
     );
 }
 
+/// On a shaker, accelerations show the ratios of masses, stiffnesses and damping alone, whatever the size of the ranges
+/// and whatever the law.
+#[test]
+fn accelerations_on_a_shaker_show_ratios_alone() {
+    let of_law = |law: &str| {
+        codes(&format!(
+            "axle case {{ param m_a: kg = 10 in 0.1..1e3; param m_b: kg = 5 in 0.1..1e3;
+            param k_a: N/m = 1e5 in 1..1e9; param c_a: N s/m = 100 in 0.1..1e6;
+            param k_b: N/m = 5e4 in 1..1e9; param c_b: N s/m = 50 in 0.1..1e6; param q: N/m^3 = 1e7 in 1..1e12;
+            direction z {{ motion p; mass a = m_a; mass b = m_b; link l: a - p {{ spring k_a; damper c_a; }}
+            link n: b - a {{ spring k_b; damper c_b; force = {law}; }}
+            output a.acceleration; output b.acceleration; }} }}"
+        ))
+    };
+    assert_eq!(of_law("q*(1 m)^2*s"), [OnlyInCombination]);
+    assert_eq!(of_law("q*s^3"), [OnlyInCombination]);
+    // A known force shows them all.
+    assert_eq!(of_law("q*s^3 + 9 N*tanh(v/1 m/s)"), []);
+}
+
+/// The mean of a position shows one constant force, or the sum of several at the same place.
+#[test]
+fn constant_forces_at_the_same_place_are_one() {
+    let of_forces = |one: &str, other: &str| {
+        codes(&format!(
+            "axle case {{ param k: N/m = 1; param f: N = 0 in -1..1; param g: N = 0 in -1..1;
+            direction z {{ mass a = 1 kg; mass b = 1 kg; force p on a; link l: a {{ spring k; {one} }}
+            link n: b {{ spring k; {other} }} output a.position; output b.position; }} }}"
+        ))
+    };
+    assert_eq!(of_forces("force = f;", "force = g;"), []);
+    assert_eq!(of_forces("force = f - g;", ""), [OnlyInCombination]);
+}
+
 #[test]
 fn a_dyno_sees_its_own_law() {
     let dyno = |law: &str| {

@@ -105,6 +105,18 @@ impl Checked {
         self.unseen.as_deref().unwrap_or_default()
     }
 
+    /// The same model, in which parameters are estimated although some are declared `known`, as a campaign may ask.
+    pub fn estimating<'a>(mut self, names: impl IntoIterator<Item = &'a str>) -> Self {
+        for name in names {
+            let own = self.model.parameters.iter_mut().find(|own| own.known && own.name == name);
+            if let Some(own) = own {
+                own.known = false;
+                self.unseen = None;
+            }
+        }
+        self
+    }
+
     /// True if that check is done.
     pub(crate) fn has_identifiability(&self) -> bool {
         self.unseen.is_some()

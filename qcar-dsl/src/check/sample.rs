@@ -12,7 +12,7 @@ use crate::model::{Default, Model, Parameter};
 pub enum Kind {
     /// Numbers near 1, for the best conditioning.
     Plain,
-    /// Parameters within their declared ranges or at their defaults, motions of millimetres.
+    /// Parameters near their defaults, or within their declared ranges; motions of millimetres.
     Declared,
 }
 
@@ -75,12 +75,17 @@ impl<'a> Point<'a> {
         // Time advances from motion to motion.
         let seed = if parameter.clock { self.motion } else { self.seed };
         let chance = uniform(seed, tag(Symbol::Parameter(index)));
+        let plain = 0.5 + 1.5 * chance;
         match (self.kind, parameter.range, parameter.default) {
+            // Near the defaults, since values from all over wide ranges would make a badly conditioned system.
+            (Kind::Declared, Some((low, high)), Default::Value(value)) if value != 0.0 => {
+                (value * plain).clamp(low, high)
+            }
             (Kind::Declared, Some((low, high)), _) if low > 0.0 => low * (high / low).powf(chance),
             (Kind::Declared, Some((low, high)), _) => low + (high - low) * chance,
             (Kind::Declared, None, Default::Value(value)) => value,
             (Kind::Declared, None, Default::Same(other)) => self.parameter(other),
-            _ => 0.5 + 1.5 * chance,
+            _ => plain,
         }
     }
 }

@@ -68,7 +68,8 @@ fn parameters_are_seen(
     motion: &Motion,
     linear: &Linear,
 ) -> Vec<(Unseen, Diagnostic)> {
-    let estimated = estimated(model);
+    let constant = constant_forces(model);
+    let estimated = estimated(model, &constant);
     let forces = Forces::of(model, motion, &mut graph, &estimated);
     let derived = Derived {
         model,
@@ -78,29 +79,72 @@ fn parameters_are_seen(
         forces,
         estimated: &estimated,
     };
-    let set = |kind, seed, motions, enough| set(&derived, Point::new(model, kind, seed), motions, enough);
+    let responses = unseen_by_responses(&derived);
+    responses
+        .into_iter()
+        .chain(alike_constants(&derived, &constant))
+        .collect()
+}
+
+/// The parameters, of those estimated, that the responses do not determine.
+fn unseen_by_responses(derived: &Derived) -> Vec<(Unseen, Diagnostic)> {
+    let (model, estimated) = (derived.model, derived.estimated);
+    let set = |kind, seed, motions, enough| set(derived, Point::new(model, kind, seed), motions, enough);
     if sees_all(&set(Kind::Plain, 1, FEW_MOTIONS, estimated.len()), estimated.len()) {
         return vec![];
     }
     let first = set(Kind::Plain, 1, FEW_MOTIONS, usize::MAX);
-    let hidden = null_space_of_scale(first.rows.clone(), estimated.len(), first.scale);
-    if hidden.is_empty() || first.rows.is_empty() {
+    if first.rows.is_empty() {
         return vec![];
     }
     // Parameters must be undetermined at all sets, since a law may be out of its range at one of them.
     let others = [(Kind::Plain, 2), (Kind::Declared, 3)].map(|(kind, seed)| set(kind, seed, MANY_MOTIONS, usize::MAX));
-    let sets: Vec<ParameterSet> = [first].into_iter().chain(others).collect();
+    described(model, estimated, [first].into_iter().chain(others).collect())
+}
+
+/// The constant forces that act alike, so that a mean shows their sum alone.
+fn alike_constants(derived: &Derived, constant: &BTreeSet<Symbol>) -> Vec<(Unseen, Diagnostic)> {
+    let model = derived.model;
+    let own = |index: &u16| constant.contains(&Symbol::Parameter(*index));
+    let unknown = |index: &u16| !model.parameters[usize::from(*index)].known;
+    let forces: Vec<u16> = (0..model.parameters.len() as u16)
+        .filter(own)
+        .filter(unknown)
+        .collect();
+    if forces.len() < 2 {
+        return vec![];
+    }
+    let set = |(kind, seed)| {
+        let point = Point::new(model, kind, seed);
+        let value = |&index: &u16| point.leaf(Symbol::Parameter(index));
+        ParameterSet {
+            parameters: forces.iter().map(value).collect(),
+            rows: (0..FEW_MOTIONS)
+                .flat_map(|motion| derived.changes_by(&forces, point.moved(motion)))
+                .collect(),
+            scale: 1.0,
+        }
+    };
+    let sets = [(Kind::Plain, 1), (Kind::Plain, 2), (Kind::Declared, 3)].map(set);
+    described(model, &forces, sets.into())
+}
+
+/// The groups of these parameters that are undetermined at all sets, each with a warning.
+fn described(model: &Model, parameters: &[u16], sets: Vec<ParameterSet>) -> Vec<(Unseen, Diagnostic)> {
+    let hidden = null_space_of_scale(sets[0].rows.clone(), parameters.len(), sets[0].scale);
     let groups = hidden.iter().map(|change| support(std::slice::from_ref(change)));
     let groups = groups.filter(|group| sets.iter().all(|set| hidden_changes(set, group) > 0));
     let groups = merged(groups.collect());
-    let describe = |group: &Vec<usize>| describe(model, &estimated, group, &sets);
-    groups.iter().map(describe).collect()
+    groups
+        .iter()
+        .map(|group| describe(model, parameters, group, &sets))
+        .collect()
 }
 
 /// The parameters that a measurement should determine. Known ones are left out, and those in the law or the states of a
 /// rolling tyre, since rolling over a profile shows more than these responses; also those of a constant force if a
 /// position or a force is an output, whose mean shows them.
-fn estimated(model: &Model) -> Vec<u16> {
+fn estimated(model: &Model, constant: &BTreeSet<Symbol>) -> Vec<u16> {
     let tyres = || model.links.iter().filter(|link| link.rolling.is_some());
     let rolling = tyres().flat_map(|link| link.rolling.iter().flatten());
     let rates = tyres().flat_map(|link| link.law.inner.iter().map(|inner| inner.rate));
@@ -109,7 +153,6 @@ fn estimated(model: &Model) -> Vec<u16> {
     };
     let expressions: Vec<Expr> = rolling.map(value).chain(rates).collect();
     let rolls: BTreeSet<Symbol> = model.graph.symbols(expressions);
-    let constant = constant_forces(model);
     let counts = |index: &u16| {
         let known = model.parameters[usize::from(*index)].known;
         !known && !rolls.contains(&Symbol::Parameter(*index)) && !constant.contains(&Symbol::Parameter(*index))

@@ -72,6 +72,17 @@ pub fn linearise(model: &Checked, motion: &Motion, graph: &mut Graph) -> Linear 
     }
 }
 
+/// The derivatives of the rates of the states by the force of each of these links, with the positions of the states.
+pub fn by_forces(motion: &Motion, graph: &mut Graph, links: &[LinkId]) -> Vec<Vec<(usize, Expr)>> {
+    let chain = Chain::new(motion, graph);
+    let rates = Rows::new(graph, motion.rates.clone());
+    let of_link = |&link: &LinkId| {
+        let mut by = chain.total_derivative(graph, Symbol::LinkForce(link));
+        rates.nonzeros(graph, &mut by)
+    };
+    links.iter().map(of_link).collect()
+}
+
 fn is_coupled(model: &Checked) -> bool {
     let mut links = (0..).map(LinkId).zip(&model.links);
     links.any(|(id, link)| !link.law.other_links(&model.graph, id).is_empty())

@@ -400,8 +400,10 @@ fn accepted_model(tree: &ModelTree, before: &Checked) -> Result<Checked, Report>
         text: tree.file().to_string(),
     };
     let model = check_text(text, &|_, path| Err(format!("{path} is not part of a patched model")))?;
+    let estimated = before.parameters.iter().filter(|own| !own.known);
+    let model = model.estimating(estimated.map(|own| own.name.as_str()));
     let model = identifiability::with_identifiability(model);
-    if model.unseen().iter().any(|own| hides_more(own, before.unseen())) {
+    if model.unseen().iter().any(|own| hides_more(own, &model, before.unseen())) {
         let mut report = model.warnings().clone();
         report
             .diagnostics
@@ -412,11 +414,15 @@ fn accepted_model(tree: &ModelTree, before: &Checked) -> Result<Checked, Report>
     Ok(model)
 }
 
-/// True if a group has more undetermined combinations than the groups of the unpatched model in it. Otherwise its new
-/// parameters are determined once those of the model are: if only ratios of masses and stiffnesses are seen, one known
-/// mass gives all of them.
-fn hides_more(group: &Unseen, before: &[Unseen]) -> bool {
+/// True if a group has more undetermined combinations than the groups of the unpatched model in it, apart from their
+/// parameters that the patch has removed. Otherwise its new parameters are determined once those of the model are: if
+/// only ratios of masses and stiffnesses are seen, one known mass gives all of them.
+fn hides_more(group: &Unseen, model: &Checked, before: &[Unseen]) -> bool {
     let hidden = |own: &Unseen| own.parameters.len() - own.seen;
-    let is_inside = |own: &&Unseen| own.parameters.iter().all(|name| group.parameters.contains(name));
+    let is_left = |name: &&String| model.parameters.iter().any(|own| own.name == **name);
+    let is_inside = |own: &&Unseen| {
+        let mut left = own.parameters.iter().filter(is_left);
+        left.all(|name| group.parameters.contains(name))
+    };
     hidden(group) > before.iter().filter(is_inside).map(hidden).sum()
 }

@@ -3,6 +3,8 @@
 //! `y = (C R B + D) u` with `R = (jω - A)⁻¹`, and its derivative by a parameter is
 //! `C R (A' R B + B') u + (C' R B + D') u`, in which `C R` is the adjoint of the outputs.
 
+use std::collections::BTreeMap;
+
 use num_complex::Complex64;
 use qcar_model::{Entry, Matrix};
 
@@ -54,23 +56,51 @@ impl Derived<'_> {
         let mut seen = Vec::new();
         for motion in 0..motions {
             let point = point.moved(motion);
-            let known = HashMap::default().into();
-            let leaf = |symbol: Symbol| defined(&known, symbol).unwrap_or_else(|| point.leaf(symbol));
-            let values = Values::new(self.graph, &leaf);
-            for &(symbol, value) in &self.motion.definitions {
-                let value = values.of(value);
-                known.borrow_mut().insert(symbol, value);
-            }
-            let matrices = Matrices::of(self, &values);
-            for frequency in frequencies {
-                matrices.look(frequency, &mut seen);
-                if seen.len() >= enough {
-                    return seen;
-                }
+            let enough = self.evaluated(point, |values| {
+                let matrices = Matrices::of(self, values);
+                frequencies.into_iter().any(|frequency| {
+                    matrices.look(frequency, &mut seen);
+                    seen.len() >= enough
+                })
+            });
+            if enough {
+                return seen;
             }
             seen.extend(self.forces.seen(self.graph, &point, self.estimated.len()));
         }
         seen
+    }
+
+    /// The derivatives of the rates and the outputs by these parameters at a point, each relative to the largest one and
+    /// to the parameters.
+    pub fn changes_by(&self, parameters: &[u16], point: Point) -> Vec<Vec<f64>> {
+        let mut rows = BTreeMap::new();
+        self.evaluated(point, |values| {
+            for &(is_output, row, parameter, change) in &self.linear.parameter_jacobian {
+                if let Ok(place) = parameters.binary_search(&parameter) {
+                    let row = rows.entry((is_output, row)).or_insert_with(|| vec![0.0; parameters.len()]);
+                    row[place] = values.of(change) * point.leaf(Symbol::Parameter(parameter));
+                }
+            }
+        });
+        let relative = |row: Vec<f64>| {
+            let largest = row.iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
+            row.into_iter().map(|entry| entry / largest).collect()
+        };
+        let rows = rows.into_values().map(relative);
+        rows.filter(|row: &Vec<f64>| row.iter().all(|entry| entry.is_finite())).collect()
+    }
+
+    /// Evaluates expressions of the equations at a point.
+    fn evaluated<T>(&self, point: Point, evaluate: impl FnOnce(&Values) -> T) -> T {
+        let known = HashMap::default().into();
+        let leaf = |symbol: Symbol| defined(&known, symbol).unwrap_or_else(|| point.leaf(symbol));
+        let values = Values::new(self.graph, &leaf);
+        for &(symbol, value) in &self.motion.definitions {
+            let value = values.of(value);
+            known.borrow_mut().insert(symbol, value);
+        }
+        evaluate(&values)
     }
 }
 
