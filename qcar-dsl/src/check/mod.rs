@@ -108,7 +108,11 @@ impl Checked {
     /// The same model, in which parameters are estimated although some are declared `known`, as a campaign may ask.
     pub fn estimating<'a>(mut self, names: impl IntoIterator<Item = &'a str>) -> Self {
         for name in names {
-            let own = self.model.parameters.iter_mut().find(|own| own.known && own.name == name);
+            let own = self
+                .model
+                .parameters
+                .iter_mut()
+                .find(|own| own.known && own.name == name);
             if let Some(own) = own {
                 own.known = false;
                 self.unseen = None;

@@ -107,10 +107,7 @@ fn alike_constants(derived: &Derived, constant: &BTreeSet<Symbol>) -> Vec<(Unsee
     let model = derived.model;
     let own = |index: &u16| constant.contains(&Symbol::Parameter(*index));
     let unknown = |index: &u16| !model.parameters[usize::from(*index)].known;
-    let forces: Vec<u16> = (0..model.parameters.len() as u16)
-        .filter(own)
-        .filter(unknown)
-        .collect();
+    let forces: Vec<u16> = (0..model.parameters.len() as u16).filter(own).filter(unknown).collect();
     if forces.len() < 2 {
         return vec![];
     }

@@ -403,7 +403,11 @@ fn accepted_model(tree: &ModelTree, before: &Checked) -> Result<Checked, Report>
     let estimated = before.parameters.iter().filter(|own| !own.known);
     let model = model.estimating(estimated.map(|own| own.name.as_str()));
     let model = identifiability::with_identifiability(model);
-    if model.unseen().iter().any(|own| hides_more(own, &model, before.unseen())) {
+    if model
+        .unseen()
+        .iter()
+        .any(|own| hides_more(own, &model, before.unseen()))
+    {
         let mut report = model.warnings().clone();
         report
             .diagnostics

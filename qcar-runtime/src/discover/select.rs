@@ -24,6 +24,8 @@ mod held_out;
 mod answers;
 // Verdict and most probable candidates.
 mod verdict;
+// Sets with one effect less.
+mod reduce;
 // Replacement of effects by their rivals.
 mod exchange;
 // Learned laws for effects that the catalogue lacks.
@@ -38,7 +40,7 @@ use std::sync::Arc;
 use rayon::iter::Either;
 use rayon::prelude::*;
 
-use assembly::{Assembly, Hypothesis, Place, Placed};
+use assembly::{Assembly, Hypothesis, Place};
 use detection_limit::detection_limits;
 use exchange::{exchanges, other_forms};
 use extend::extensions;
@@ -46,7 +48,7 @@ use fidelity::Fidelity;
 use first_law::FirstLaw;
 use held_out::supported_part;
 use probability::probabilities;
-use race::{FINE_BUDGET, MOST_REPETITIONS, may_gain_more};
+use reduce::reductions;
 use set::{Set, best_base, excess, explained_share, is_missing, keep_best, leaves_more_than_noise, most_probable};
 use verdict::conclude;
 
@@ -119,8 +121,7 @@ fn search(base: Set, mut known: Option<Set>, evidence: &Evidence, progress: Prog
     progress(Update::Interim(&text, &[], &base.explanation));
     let mut sets = vec![base];
     let mut law = FirstLaw::default();
-    let lacks_nothing = lacks_nothing(&sets[0], evidence);
-    while let Some(place) = next(&sets, evidence).filter(|_| !lacks_nothing) {
+    while let Some(place) = next(&sets, evidence) {
         sets[place].extended = true;
         let lead = law.lead(&sets, place, evidence, progress);
         let more = extensions(&sets[place], lead, evidence, progress);
@@ -137,7 +138,7 @@ fn search(base: Set, mut known: Option<Set>, evidence: &Evidence, progress: Prog
         report(&sets[best(&sets)], evidence, progress);
     }
     // Remove effects that the evidence no longer supports beside those found later.
-    while let Some(place) = unreduced(&sets) {
+    while let Some(place) = unreduced(&sets, evidence) {
         sets[place].reduced = true;
         let less = reductions(&sets[place], &sets[0], evidence, progress);
         sets.extend(less);
@@ -192,12 +193,12 @@ fn limits(base: &Set, evidence: &Evidence) -> Vec<DetectionLimit> {
     detection_limits(&base.assembly, refit, &Fidelity::of(&steady).fine)
 }
 
-/// True if all runs are records and the model leaves no more than noise in the fitted and in the held-out ones. The
-/// uncertainty of a record includes half a percent of the response, as the smallest error of any model. What an effect
-/// gains below that comes from noise of the recorded inputs, mains hum or drift.
-fn lacks_nothing(base: &Set, evidence: &Evidence) -> bool {
+/// True if all runs are records and the set leaves no more than noise in the fitted and in the held-out ones. The
+/// uncertainty of a record includes half a percent of the response, as the smallest error of any model. What a further
+/// effect gains below that comes from noise of the recorded inputs, mains hum or drift.
+fn lacks_nothing(set: &Set, evidence: &Evidence) -> bool {
     let is_record = |run: &Run| matches!(run.stimulus, Stimulus::History { .. });
-    let leaves_noise = !leaves_more_than_noise(base, evidence) && excess(&base.explanation, evidence) <= 0.0;
+    let leaves_noise = !leaves_more_than_noise(set, evidence) && excess(&set.explanation, evidence) <= 0.0;
     evidence.runs.iter().all(is_record) && leaves_noise
 }
 
@@ -256,9 +257,12 @@ const BEAM: usize = 2;
 ///    explains most of the excess residual too.
 ///
 /// A third effect is tried only if the first two explain most of the excess residual. Otherwise the catalogue has no
-/// answer.
+/// answer. Nothing is worth trying if the most probable set lacks nothing.
 fn next(sets: &[Set], evidence: &Evidence) -> Option<usize> {
     let best = best(sets);
+    if lacks_nothing(&sets[best], evidence) {
+        return None;
+    }
     let explained = || explained_share(&sets[best_base(sets)], &sets[best], evidence);
     let effects = sets[best].names().len();
     let may_grow = effects < 2 || effects < MOST_EFFECTS && explained() >= GREATER_PART;
@@ -302,10 +306,12 @@ fn unexchanged(sets: &[Set], evidence: &Evidence) -> Option<usize> {
     [best, supported_part(sets, best, evidence)].into_iter().find(open)
 }
 
-/// The most probable set, if it has several effects and has not been fitted without each of them yet.
-fn unreduced(sets: &[Set]) -> Option<usize> {
+/// The most probable set or its part that the held-out runs support, if it has several effects and has not been fitted
+/// without each of them yet.
+fn unreduced(sets: &[Set], evidence: &Evidence) -> Option<usize> {
+    let open = |place: &usize| !sets[*place].reduced && sets[*place].assembly.effects().len() > 1;
     let best = best(sets);
-    (!sets[best].reduced && sets[best].assembly.effects().len() > 1).then_some(best)
+    [best, supported_part(sets, best, evidence)].into_iter().find(open)
 }
 
 /// True if a learned law contradicts the named effects: it is at a place without a named effect, or it explains most of
@@ -397,36 +403,4 @@ fn setting_spread(assembly: &Assembly, spread: f64) -> std::collections::BTreeMa
 fn finite_explanation(hypothesis: &Hypothesis<'_>, refit: Refit, evidence: &Evidence) -> Option<Explanation> {
     let explanation = hypothesis.explanation(refit, evidence).ok()?;
     explanation.refit.log_evidence.is_finite().then_some(explanation)
-}
-
-/// Refits the set without each of its effects in turn, the last one included. From this start the remaining effects may
-/// reach a better optimum than the set that was extended.
-fn reductions(set: &Set, base: &Set, evidence: &Evidence, progress: Progress<'_>) -> Vec<Set> {
-    progress(Update::Step("fitting with one effect less"));
-    let without = |left_out| without(left_out, set, base, evidence);
-    (0..set.assembly.effects().len())
-        .into_par_iter()
-        .filter_map(without)
-        .collect()
-}
-
-/// The set without one of its effects, by position; `None` if it cannot be assembled or fitted.
-fn without(left_out: usize, set: &Set, base: &Set, evidence: &Evidence) -> Option<Set> {
-    let effects = set.assembly.effects();
-    let others: Vec<&Placed> = effects[..left_out].iter().chain(&effects[left_out + 1..]).collect();
-    let assembly = base.assembly.with_all(&others)?;
-    let hypothesis = assembly.hypothesis();
-    let mut from = set.assembly.hypothesis().place(&set.explanation.refit);
-    from.errors.truncate(base.assembly.hypothesis().sensor_errors());
-    let steady = evidence.minus(&set.explanation.refit.unsteady).with_step_limit();
-    let mut refit = hypothesis.fit(&from, &steady, FINE_BUDGET).ok()?;
-    for _ in 0..MOST_REPETITIONS {
-        if !may_gain_more(&refit) {
-            break;
-        }
-        refit = hypothesis.fit(&hypothesis.place(&refit), &steady, FINE_BUDGET).ok()?;
-    }
-    let explanation = finite_explanation(&hypothesis, refit, evidence)?;
-    let share = set.log_prior * others.len() as f64 / effects.len() as f64;
-    Some(Set::new(assembly, explanation, share))
 }

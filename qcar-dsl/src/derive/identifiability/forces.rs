@@ -49,7 +49,12 @@ impl Forces {
         let slopes = slopes(model, graph);
         let one = graph.constant(1.0);
         let less = graph.constant(-1.0);
-        let is_output = |id| model.outputs.iter().any(|output| output.signal == Signal::LinkForce(id));
+        let is_output = |id| {
+            model
+                .outputs
+                .iter()
+                .any(|output| output.signal == Signal::LinkForce(id))
+        };
         let is_reached = |slopes: &Slopes, id| slopes.nonlinear && equations.reach_outputs(Symbol::LinkForce(id));
         let all = || (0..).map(LinkId).zip(&slopes);
         let measured = all().filter(|&(id, _)| is_output(id)).map(|(id, _)| id);
@@ -69,7 +74,12 @@ impl Forces {
             let rest = (!is_output(id)).then_some((less, slopes.rest));
             let parts = [(one, slopes.force)].into_iter().chain(rates).chain(rest);
             ObservedForce {
-                parts: parts.map(|(factor, e)| Part { factor, value: value(e) }).collect(),
+                parts: parts
+                    .map(|(factor, e)| Part {
+                        factor,
+                        value: value(e),
+                    })
+                    .collect(),
                 seen_by: seen_by.into_iter().map(&mut value).collect(),
             }
         };

@@ -78,7 +78,9 @@ impl Derived<'_> {
         self.evaluated(point, |values| {
             for &(is_output, row, parameter, change) in &self.linear.parameter_jacobian {
                 if let Ok(place) = parameters.binary_search(&parameter) {
-                    let row = rows.entry((is_output, row)).or_insert_with(|| vec![0.0; parameters.len()]);
+                    let row = rows
+                        .entry((is_output, row))
+                        .or_insert_with(|| vec![0.0; parameters.len()]);
                     row[place] = values.of(change) * point.leaf(Symbol::Parameter(parameter));
                 }
             }
@@ -88,7 +90,8 @@ impl Derived<'_> {
             row.into_iter().map(|entry| entry / largest).collect()
         };
         let rows = rows.into_values().map(relative);
-        rows.filter(|row: &Vec<f64>| row.iter().all(|entry| entry.is_finite())).collect()
+        rows.filter(|row: &Vec<f64>| row.iter().all(|entry| entry.is_finite()))
+            .collect()
     }
 
     /// Evaluates expressions of the equations at a point.

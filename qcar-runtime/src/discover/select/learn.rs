@@ -7,9 +7,10 @@ use super::assembly::Placed;
 use super::extend::{SearchStart, explains_fitted};
 use super::held_out::predicts_better;
 use super::race::{Finalist, race};
+use super::reduce::Reduction;
 use super::screen::Entrant;
 use super::set::{Set, explained_share, is_missing, stated_share};
-use super::{Progress, Update, finite_explanation, without};
+use super::{Progress, Update, finite_explanation};
 use crate::discover::answer::{Finding, Learned};
 use crate::discover::candidate::Candidate;
 use crate::discover::observe::Evidence;
@@ -48,9 +49,8 @@ fn without_needless_law(laws: Set, base: &Set, plain: &Set, evidence: &Evidence)
     if learned.len() < 2 {
         return laws;
     }
-    let less = learned
-        .into_par_iter()
-        .filter_map(|place| without(place, &laws, plain, evidence));
+    let reduction = Reduction::of(&laws, plain, evidence);
+    let less = learned.into_par_iter().filter_map(|place| reduction.without(place));
     let best = less.max_by(|a, b| a.log_posterior().total_cmp(&b.log_posterior()));
     match best {
         Some(less) if less.log_posterior() > laws.log_posterior() => less,

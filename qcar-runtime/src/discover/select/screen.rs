@@ -243,6 +243,11 @@ impl Tangent {
         Some(change.norm_squared() - along.dot(&imitated))
     }
 
+    /// Derivatives of the residuals, whitened by the discrepancy.
+    pub fn white_jacobian(&self) -> &DMatrix<f64> {
+        &self.white_jacobian
+    }
+
     /// Gain of the present unknowns and the discrepancy on this evidence, without a candidate.
     fn gain_without_candidate(&self) -> f64 {
         let Some(hessian) = &self.hessian else { return 0.0 };

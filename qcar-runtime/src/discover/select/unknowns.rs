@@ -10,6 +10,8 @@ pub struct Unknowns {
     all: Vec<Unknown>,
     /// Names of its free model parameters other than shape parameters: they determine the size of the effect.
     magnitudes: Vec<String>,
+    /// The model parameter that is its strength, and the finite value at which the effect vanishes.
+    strength: Option<(String, f64)>,
 }
 
 /// An unknown of an effect. The first string is its name in the effect.
@@ -45,10 +47,35 @@ impl Unknowns {
             }
             Change::Sensor { .. } => Vec::new(),
         };
+        let strength = |own: &Added| match own.role {
+            ParameterRole::Strength { vanishes_at } if vanishes_at.is_finite() => Some((own.name.clone(), vanishes_at)),
+            _ => None,
+        };
+        let strength = match &candidate.change {
+            Change::Model { parameters, .. } => parameters.iter().find_map(strength),
+            Change::Sensor { .. } => None,
+        };
         Self {
             all: unknowns,
             magnitudes,
+            strength,
         }
+    }
+
+    /// The changes of its unknowns that make the effect vanish, by position in the free parameters of a fit: that of
+    /// the strength, and zero for the others. `None` if it vanishes at no finite value of a free parameter.
+    pub fn removal(&self, explanation: &Explanation) -> Option<Vec<(usize, f64)>> {
+        let (strength, vanishes_at) = self.strength.as_ref()?;
+        let at = free_of(explanation, strength)?;
+        let own = self.all.iter().filter_map(|unknown| match unknown {
+            Unknown::Parameter(_, name) => free_of(explanation, name),
+            Unknown::Coefficient(..) => None,
+        });
+        let change = |free| match free == at {
+            true => vanishes_at - explanation.refit.estimate[free],
+            false => 0.0,
+        };
+        Some(own.map(|free| (free, change(free))).collect())
     }
 
     /// True if a magnitude is at its bound, a sign that the effect imitates another. Shape parameters are not counted.
