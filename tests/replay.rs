@@ -12,7 +12,7 @@ use qcar_runtime::model::Model;
 use qcar_runtime::response::Response;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::simulate::replay::Direction;
-use qcar_runtime::simulate::{Between, Reading, Recorded, Replay, SimulateError, replay};
+use qcar_runtime::simulate::{Accuracy, Between, Reading, Recorded, Replay, SimulateError, replay};
 use qcar_runtime::spectrum::{synthesize, transform};
 use qcar_runtime::transmissibility::{Point, signal};
 
@@ -50,6 +50,7 @@ fn band_limited(rate: f64, samples: usize) -> Between {
         band: (0.0, rate),
         periodic: false,
         samples,
+        accuracy: Accuracy::USUAL,
     }
 }
 
@@ -466,6 +467,7 @@ fn records_that_do_not_fit_are_refused() {
             band: (0.0, 100.0),
             periodic: false,
             samples: samples.len(),
+            accuracy: Accuracy::USUAL,
         };
         let p = vec![1.0; model.about().parameters.len()];
         let error: SimulateError = replay(model, &p, vec![recorded], how, Vec::new()).expect_err("it does not fit");

@@ -46,7 +46,7 @@ pub use car::{Car, Variant};
 pub use cleat::{Cleat, tyre, tyre_of};
 pub use failure::SimulateError;
 pub use recorder::RecordedSignals;
-pub use replay::{Between, Reading, Recorded, Replay, replay};
+pub use replay::{Accuracy, Between, Reading, Recorded, Replay, replay};
 pub use ride::{Drive, Ride, end_of_ride, ride, rides};
 pub use sampling::AntiAlias;
 pub use settings::{Method, Settings};

@@ -2,7 +2,7 @@
 
 use qcar_runtime::model::Model;
 use qcar_runtime::response::periodic::{Drive, Periodic};
-use qcar_runtime::simulate::{Between, Reading, Recorded, replay};
+use qcar_runtime::simulate::{Accuracy, Between, Reading, Recorded, replay};
 use std::f64::consts::TAU;
 
 use super::support::strut::{Parts, Strut};
@@ -107,6 +107,7 @@ fn a_replayed_sine_settles_to_the_cycle_of_harmonic_balance() {
         band: (0.0, rate),
         periodic: false,
         samples: pad.len(),
+        accuracy: Accuracy::USUAL,
     };
     let outputs = (0..2).map(Reading::Output).collect();
     let replayed = replay(&model, &P, vec![recorded], how, outputs).unwrap();

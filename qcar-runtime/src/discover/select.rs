@@ -24,6 +24,8 @@ mod held_out;
 mod answers;
 // Verdict and most probable candidates.
 mod verdict;
+// The error of the integration of records.
+mod integration;
 // Sets with one effect less.
 mod reduce;
 // Replacement of effects by their rivals.
@@ -47,6 +49,7 @@ use extend::extensions;
 use fidelity::Fidelity;
 use first_law::FirstLaw;
 use held_out::supported_part;
+use integration::AccuracyCheck;
 use probability::probabilities;
 use reduce::reductions;
 use set::{Set, best_base, excess, explained_share, is_missing, keep_best, leaves_more_than_noise, most_probable};
@@ -90,7 +93,21 @@ pub fn discover(
             quieter = Some(own);
         }
     }
-    let (discovery, found) = search(base, None, evidence, progress);
+    let search = |base: Set, known: Option<Set>, evidence: &mut Evidence| {
+        let (mut base, mut known) = (base, known);
+        loop {
+            if let Some(found) = attempt(base, known.take(), evidence, progress) {
+                return Ok::<_, PredictError>(found);
+            }
+            progress(Update::Step("repeating the search with a more accurate integration"));
+            *evidence = evidence.with_high_accuracy();
+            base = fitted(evidence)?;
+        }
+    };
+    let (discovery, found) = search(base, None, evidence)?;
+    if !evidence.could_be_more_accurate() {
+        quieter = quieter.map(Quieter::with_high_accuracy);
+    }
     // A large missing effect can hide the noise of the inputs, so the filtered inputs are tested again with the answer.
     let quieter = quieter.filter(|quieter| {
         let again = found.again(&quieter.evidence);
@@ -104,7 +121,8 @@ pub fn discover(
     progress(Update::Step(
         "repeating the search without the noise of the recorded inputs",
     ));
-    let (discovery, found) = search(fitted(evidence)?, found.fitted_to(evidence), evidence, progress);
+    let known = found.fitted_to(evidence);
+    let (discovery, found) = search(fitted(evidence)?, known, evidence)?;
     evidence.notices.extend(found.note_on_sensors());
     Ok(discovery)
 }
@@ -114,13 +132,15 @@ fn is_more_probable(log_evidence: f64, than: &Set, evidence: &Evidence) -> bool 
     log_evidence - than.explanation.refit.log_evidence > evidence.numbers.odds_of_certain().ln()
 }
 
-/// The search from a fitted base model. `known` is the answer for nearly the same data: the search may miss its minimum
-/// now, or find another. Also returns the set of the answer.
-fn search(base: Set, mut known: Option<Set>, evidence: &Evidence, progress: Progress<'_>) -> (Discovery, Set) {
+/// The search from a fitted base model; `None` as soon as the error of the integration of records could change the
+/// answer. `known` is the answer for nearly the same data: the search may miss its minimum now, or find another. Also
+/// returns the set of the answer.
+fn attempt(base: Set, mut known: Option<Set>, evidence: &Evidence, progress: Progress<'_>) -> Option<(Discovery, Set)> {
     let text = format!("the base model alone leaves {}", rms_text(&base.explanation, evidence));
     progress(Update::Interim(&text, &[], &base.explanation));
     let mut sets = vec![base];
     let mut law = FirstLaw::default();
+    let mut accuracy = AccuracyCheck::new(evidence);
     while let Some(place) = next(&sets, evidence) {
         sets[place].extended = true;
         let lead = law.lead(&sets, place, evidence, progress);
@@ -135,6 +155,7 @@ fn search(base: Set, mut known: Option<Set>, evidence: &Evidence, progress: Prog
             let others = other_forms(&sets[place], &sets, evidence);
             sets.extend(others);
         }
+        accuracy.suffices(&sets)?;
         report(&sets[best(&sets)], evidence, progress);
     }
     // Remove effects that the evidence no longer supports beside those found later.
@@ -149,12 +170,13 @@ fn search(base: Set, mut known: Option<Set>, evidence: &Evidence, progress: Prog
         let others = exchanges(&sets[place], &sets, evidence);
         sets.extend(others);
     }
+    accuracy.suffices(&sets)?;
     let (mut discovery, found) = conclude(&sets, evidence);
     compare_with_law(&mut discovery, found, &sets, &mut law, evidence, progress);
     if discovery.verdict == Verdict::None {
         discovery.detection_limits = limits(&sets[best_base(&sets)], evidence);
     }
-    (discovery, sets.swap_remove(found))
+    Some((discovery, sets.swap_remove(found)))
 }
 
 /// Learns a law if the answer needs one, and replaces the findings by it if it is certainly more probable. `found` is

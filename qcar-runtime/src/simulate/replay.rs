@@ -15,6 +15,7 @@ mod initial;
 mod tangent;
 
 pub use input::{Between, Recorded};
+pub use stepper::Accuracy;
 pub use tangent::Direction;
 
 use std::cmp::Ordering;
@@ -252,7 +253,7 @@ impl<'a> Replay<'a> {
         let inputs = self.nodes.get_or_init(|| self.inputs(steps));
         let mut restarts = self.restarts.iter().peekable();
         let mut y = vec![0.0; self.model.about().outputs.len()];
-        let mut stepper = Stepper::new(self.model, p, 1.0 / (self.how.rate * steps as f64));
+        let mut stepper = Stepper::new(self.model, p, 1.0 / (self.how.rate * steps as f64), self.how.accuracy);
         let count = inputs.count();
         let mut taken = Vec::with_capacity(count / 2);
         let mut signals = vec![Vec::new(); self.readings.len()];

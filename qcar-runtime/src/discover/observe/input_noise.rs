@@ -36,6 +36,14 @@ pub struct Quieter {
 }
 
 impl Quieter {
+    /// The same with records integrated accurately.
+    pub fn with_high_accuracy(self) -> Self {
+        Self {
+            evidence: self.evidence.with_high_accuracy(),
+            drawn: self.drawn.with_high_accuracy(),
+        }
+    }
+
     /// The data with the noise of all recorded inputs removed; `None` if the removed part of every input is below the
     /// noise of a 12-bit converter. Only the responses can show whether that part is noise, since an excitation may be
     /// white too.

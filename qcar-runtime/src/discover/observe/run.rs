@@ -20,6 +20,7 @@ use std::sync::Arc;
 
 use crate::campaign::{Axis, Role};
 use crate::roles::OnRig;
+use crate::simulate::Accuracy;
 use crate::transmissibility::Point;
 use crate::transmissibility::harmonics::Swept;
 
@@ -76,6 +77,8 @@ pub enum Stimulus {
         band: Option<Band>,
         /// True if the record consists of whole periods of a periodic motion.
         periodic: bool,
+        /// Accuracy of its predictions.
+        accuracy: Accuracy,
     },
     /// A road under a rolling tyre.
     Cleat(Passage),

@@ -5,6 +5,7 @@ use nalgebra::Complex;
 use super::dataset::Evidence;
 use super::run::{Band, COARSE_POINTS, Run, SEARCH_STEP_LIMIT, Stimulus};
 use super::series::Series;
+use crate::simulate::Accuracy;
 
 /// Largest factor by which a record is shortened, since its beginning may not represent the rest.
 const MOST_SHORTENED: usize = 2;
@@ -30,6 +31,24 @@ impl Evidence {
             }
         }
         limited
+    }
+
+    /// Integrates records accurately.
+    pub fn with_high_accuracy(&self) -> Self {
+        let mut accurate = self.clone();
+        for run in &mut accurate.runs {
+            if let Stimulus::History { accuracy, .. } = &mut run.stimulus {
+                *accuracy = Accuracy::HIGH;
+            }
+        }
+        accurate
+    }
+
+    /// True if a record can be integrated more accurately.
+    pub fn could_be_more_accurate(&self) -> bool {
+        let usual =
+            |run: &Run| matches!(run.stimulus, Stimulus::History { accuracy, .. } if accuracy != Accuracy::HIGH);
+        self.runs.iter().any(usual)
     }
 
     /// Keeps every `step`-th value of each series for a coarse fit. Histories and cleat runs keep their beginning

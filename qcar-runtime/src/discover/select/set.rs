@@ -121,7 +121,7 @@ impl Set {
     }
 
     /// The fitted runs without the non-steady part of the sweeps.
-    fn steady(&self, evidence: &Evidence) -> Evidence {
+    pub fn steady(&self, evidence: &Evidence) -> Evidence {
         let steady = evidence.minus(&self.explanation.refit.unsteady).with_step_limit();
         Fidelity::of(&steady).fine
     }

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Complex;
 
+use super::stepper::Accuracy;
 use crate::model::{About, InputKind, Quantity};
 use crate::spectrum::{synthesize, transform};
 
@@ -31,6 +32,8 @@ pub struct Between {
     pub periodic: bool,
     /// Number of samples.
     pub samples: usize,
+    /// Accuracy of the integration.
+    pub accuracy: Accuracy,
 }
 
 /// Node values for each input of the model, `nodes` of them for each sample; zero for an input that was not recorded.

@@ -10,15 +10,31 @@ use super::decay::Decay;
 use crate::model::Model;
 use crate::solver::rk4;
 
-/// Largest error of a step, relative to the largest value of a state so far.
-const TOLERANCE: f64 = 1e-3;
-/// Most halvings of a step for the sake of accuracy.
-const MOST: u8 = 4;
+/// Accuracy of an integration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accuracy {
+    /// Largest error of a step, relative to the largest value of a state so far.
+    tolerance: f64,
+    /// Most halvings of a step for its sake.
+    halvings: u8,
+}
+
+impl Accuracy {
+    /// For smooth laws at the usual accuracy of sensors.
+    pub const USUAL: Self = Self {
+        tolerance: 1e-3,
+        halvings: 4,
+    };
+    /// For laws that are sharp within a step, whose errors add up over a record.
+    pub const HIGH: Self = Self {
+        tolerance: 1e-5,
+        halvings: 6,
+    };
+}
+
 /// Most halvings of a step that would otherwise diverge, as with a stiff friction at high speed. A choice: each further
 /// one admits twice the stiffness, for up to twice the work in fits that try it.
 const MOST_OF_DIVERGING: u8 = 6;
-/// Error of a step that has diverged, relative to the tolerance: it is as large as the largest value of a state.
-const DIVERGED: f64 = 1.0 / TOLERANCE;
 /// Relative error below which the step length doubles: the error grows about 16 times.
 const ROOM: f64 = 1.0 / 32.0;
 
@@ -39,6 +55,7 @@ pub struct Stepper<'a> {
     /// True if states may decay within a step, and if one did in a part of the last one.
     may_decay: bool,
     decays: bool,
+    accuracy: Accuracy,
     /// Length of a whole step, s.
     length: f64,
     k: [Vec<f64>; 5],
@@ -57,7 +74,7 @@ pub struct Stepper<'a> {
 
 impl<'a> Stepper<'a> {
     /// A stepper for a model with these parameter values, with steps of `length` (s).
-    pub fn new(model: &'a dyn Model, p: &'a [f64], length: f64) -> Self {
+    pub fn new(model: &'a dyn Model, p: &'a [f64], length: f64, accuracy: Accuracy) -> Self {
         let about = model.about();
         let (states, inputs) = (about.states.len(), about.inputs.len());
         let mut constants = vec![0.0; about.constants];
@@ -68,6 +85,7 @@ impl<'a> Stepper<'a> {
             decay: Decay::new(model, p),
             may_decay: false,
             decays: false,
+            accuracy,
             length,
             k: std::array::from_fn(|_| vec![0.0; states]),
             x: vec![0.0; states],
@@ -104,7 +122,10 @@ impl<'a> Stepper<'a> {
         loop {
             let halvings = self.halvings;
             let error = self.parts(inputs, halvings, x);
-            let is_halved_enough = halvings >= MOST && error < DIVERGED || halvings == MOST_OF_DIVERGING;
+            // A step that has diverged has an error as large as the largest value of a state.
+            let is_bounded = error * self.accuracy.tolerance < 1.0;
+            let most = self.accuracy.halvings;
+            let is_halved_enough = halvings >= most && is_bounded || halvings == MOST_OF_DIVERGING;
             if error <= 1.0 || is_halved_enough {
                 let sizes = self.largest.iter_mut().zip(&*x);
                 sizes.for_each(|(largest, x)| *largest = largest.max(x.abs()));
@@ -118,7 +139,7 @@ impl<'a> Stepper<'a> {
             x.copy_from_slice(&self.start[0]);
             let length = self.length / f64::from(1_u32 << halvings);
             // A state that does not decay at the start of the step may decay later in it.
-            let mut is_stiff = || self.decay.find(x, inputs[0], length) || halvings == MOST;
+            let mut is_stiff = || self.decay.find(x, inputs[0], length) || halvings == most;
             if !self.may_decay && is_stiff() {
                 self.may_decay = true;
             } else {
@@ -192,7 +213,11 @@ impl<'a> Stepper<'a> {
             } else {
                 (h / 6.0 * (last - end)).abs()
             };
-            if error == 0.0 { 0.0 } else { error / (TOLERANCE * size) }
+            if error == 0.0 {
+                0.0
+            } else {
+                error / (self.accuracy.tolerance * size)
+            }
         };
         (0..x.len())
             .map(error)

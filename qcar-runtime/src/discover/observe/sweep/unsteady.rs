@@ -21,7 +21,7 @@ use crate::response::parameters::Values;
 use crate::response::ratio::between;
 use crate::response::signal::SignalError;
 use crate::simulate::replay::reading;
-use crate::simulate::{Between, Reading, Recorded, Replay};
+use crate::simulate::{Accuracy, Between, Reading, Recorded, Replay};
 use crate::spectrum::{synthesize, transform};
 use crate::transmissibility::Point;
 use crate::transmissibility::harmonics::Swept;
@@ -185,6 +185,7 @@ impl<'a> Driven<'a> {
             band: self.band,
             periodic: false,
             samples: self.samples.len(),
+            accuracy: Accuracy::USUAL,
         };
         let readings = sensors.iter().map(|sensor| reading(model.about(), sensor));
         let readings: Vec<Reading> = readings.collect::<Result<_, _>>()?;

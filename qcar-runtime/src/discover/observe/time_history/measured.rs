@@ -14,6 +14,7 @@ use crate::discover::observe::{Band, Evidence, Kind, Recordings, Run, Series, Sp
 use crate::error::{InputError, Place, Problem};
 use crate::mean::deviation;
 use crate::model::About;
+use crate::simulate::Accuracy;
 use crate::transmissibility::{Point, signal};
 
 /// Share of a record at each end that is not compared, because the band limit of the inputs is inaccurate there.
@@ -70,6 +71,7 @@ impl Evidence {
                 spread,
                 band: part.band,
                 periodic,
+                accuracy: Accuracy::USUAL,
                 inputs: Recordings {
                     start: history.start,
                     samples: history.len(),

@@ -204,6 +204,7 @@ fn prepare<'a>(
         band_limited,
         restarts,
         periodic,
+        accuracy,
         ..
     } = &evidence.runs[run].stimulus
     else {
@@ -229,6 +230,7 @@ fn prepare<'a>(
         band: (0.0, *rate),
         periodic: *periodic,
         samples: inputs.samples,
+        accuracy: *accuracy,
     };
     let restarts = restarts
         .iter()
