@@ -182,6 +182,22 @@ pub fn entrants<'p>(candidates: &[Candidate], screened: &'p [Screened]) -> Vec<&
     entering.map(|(_, entry)| entry).collect()
 }
 
+/// Fits a hypothesis from a place to windows of the records, each time twice as long as before, and to all fitted runs.
+/// `None` if an evidence is not finite.
+pub fn through_windows(hypothesis: &Hypothesis<'_>, from: &Place, windows: &Fidelity) -> Option<Refit> {
+    let mut runner = Runner {
+        candidate: 0,
+        hypothesis,
+        place: from.clone(),
+        refit: None,
+    };
+    let [.., medium, fine] = &ROUNDS;
+    for (round, is_cut) in [(medium, true), (fine, false)] {
+        runner = advance(runner, windows, round, is_cut)?;
+    }
+    runner.refit
+}
+
 /// Fits a runner to the data of a round; `is_cut` tells that the records are in windows.
 fn advance<'a>(mut runner: Runner<'a>, fidelity: &Fidelity, round: &Round, is_cut: bool) -> Option<Runner<'a>> {
     let (rounds, evaluations) = round.budget;

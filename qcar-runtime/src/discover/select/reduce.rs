@@ -1,17 +1,19 @@
 //! Sets with one effect less.
 
+use std::cmp::Ordering;
+
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::assembly::{Hypothesis, Place, Placed};
 use super::fidelity::Fidelity;
 use super::finite_explanation;
-use super::race::{FINE_BUDGET, MOST_REPETITIONS, may_gain_more};
+use super::race::{FINE_BUDGET, MOST_REPETITIONS, may_gain_more, through_windows};
 use super::screen::Tangent;
 use super::set::Set;
 use crate::discover::answer::{Progress, Update};
 use crate::discover::observe::Evidence;
-use crate::discover::posterior::Explanation;
+use crate::discover::posterior::{Explanation, Refit};
 use crate::least_squares::gram;
 
 /// Refits the set without each of its effects in turn, the last one included. From this start the remaining effects may
@@ -35,6 +37,8 @@ pub struct Reduction<'a> {
     /// The evidence without the non-steady parts, and its runs that are fitted.
     steady: Evidence,
     fitted: Evidence,
+    /// The same with records in windows; `None` without records that can be cut.
+    windows: Option<Fidelity>,
 }
 
 impl<'a> Reduction<'a> {
@@ -48,6 +52,7 @@ impl<'a> Reduction<'a> {
             base,
             evidence,
             tangent: Tangent::new(refit, &set.assembly, &fitted),
+            windows: Fidelity::in_windows(&steady),
             steady,
             fitted,
         }
@@ -59,16 +64,28 @@ impl<'a> Reduction<'a> {
         let others: Vec<&Placed> = effects[..left_out].iter().chain(&effects[left_out + 1..]).collect();
         let assembly = self.base.assembly.with_all(&others)?;
         let hypothesis = assembly.hypothesis();
-        let starts = self.starts_without(&effects[left_out], &hypothesis).into_par_iter();
-        let explanations = starts.filter_map(|from| self.explanation(&hypothesis, &from));
-        let log_evidence = |own: &Explanation| own.refit.log_evidence;
-        let explanation = explanations.max_by(|a, b| log_evidence(a).total_cmp(&log_evidence(b)))?;
         let share = self.set.log_prior * others.len() as f64 / effects.len() as f64;
-        Some(Set::new(assembly, explanation, share))
+        let starts = self.starts_without(&effects[left_out], &hypothesis);
+        let set = |refit: Refit| {
+            let explanation = self.explanation(&hypothesis, refit)?;
+            Some(Set::new(assembly.clone(), explanation, share))
+        };
+        let to_whole = |from: &Place| hypothesis.fit(from, &self.steady, FINE_BUDGET).ok();
+        let from_whole = starts.par_iter().filter_map(to_whole).filter_map(set);
+        let best = from_whole.max_by(more_probable);
+        let suffices = |own: &Set| own.log_posterior() >= self.set.log_posterior();
+        if best.as_ref().is_some_and(suffices) {
+            return best;
+        }
+        // The phase errors of whole records may have led all of them to a local minimum.
+        let windows = self.windows.as_ref().zip(starts.first());
+        let in_windows = windows.and_then(|(windows, from)| through_windows(&hypothesis, from, windows));
+        let in_windows = in_windows.and_then(set);
+        best.into_iter().chain(in_windows).max_by(more_probable)
     }
 
-    fn explanation(&self, hypothesis: &Hypothesis<'_>, from: &Place) -> Option<Explanation> {
-        let mut refit = hypothesis.fit(from, &self.steady, FINE_BUDGET).ok()?;
+    /// The explanation by a fit, which is continued if it has not converged.
+    fn explanation(&self, hypothesis: &Hypothesis<'_>, mut refit: Refit) -> Option<Explanation> {
         for _ in 0..MOST_REPETITIONS {
             if !may_gain_more(&refit) {
                 break;
@@ -101,6 +118,10 @@ impl<'a> Reduction<'a> {
         let changed = changed.filter(|changed| left(changed) < left(&here));
         [here].into_iter().chain(changed).collect()
     }
+}
+
+fn more_probable(a: &Set, b: &Set) -> Ordering {
+    a.log_posterior().total_cmp(&b.log_posterior())
 }
 
 /// Changes of all unknowns if some of them, by column of the Jacobian, change by these amounts and the others cancel as

@@ -51,6 +51,9 @@ const FEW_SHAPES: &[f64] = &[0.0, -0.5, 0.5];
 /// Grid of every other free parameter.
 const OTHERS: [f64; 2] = [-0.5, 0.5];
 
+/// Relative error of the derivatives, with a wide margin.
+const ROUNDING: f64 = 1e-6;
+
 /// A fit whose residual the candidates may explain.
 pub struct Screening<'a> {
     assembly: &'a Assembly,
@@ -170,6 +173,8 @@ pub struct Tangent {
     white: DVector<f64>,
     white_jacobian: DMatrix<f64>,
     hessian: Option<Cholesky<f64, Dyn>>,
+    /// An orthonormal basis of the changes of the whitened data that the unknowns can make, priors aside.
+    imitable: DMatrix<f64>,
     /// Jᵀr of the whitened quantities.
     gradient: DVector<f64>,
     /// The discrepancy of the fit.
@@ -201,8 +206,10 @@ impl Tangent {
         white_jacobian
             .column_iter_mut()
             .for_each(|mut column| known.whiten(column.as_mut_slice()));
+        let data = evidence.of_role(Role::Fit).map(|(_, series)| series.residuals()).sum();
         Self {
-            data: evidence.of_role(Role::Fit).map(|(_, series)| series.residuals()).sum(),
+            data,
+            imitable: span(&white_jacobian.rows(0, data).into_owned()),
             hessian: gram(&white_jacobian).cholesky(),
             gradient: white_jacobian.tr_mul(&white),
             cost: known.cost() + white.norm_squared() / 2.0,
@@ -224,13 +231,23 @@ impl Tangent {
         let imitated = hessian.solve(&along);
         let cross = self.white.rows(0, self.data).dot(&change) - self.gradient.dot(&imitated);
         let square = change.norm_squared() - along.dot(&imitated);
-        if square.is_nan() || square <= f64::EPSILON * change.norm_squared() {
+        if square.is_nan() || square <= 0.0 || self.imitates(&change) {
             return None;
         }
         let scale = (-cross / square).clamp(least, most);
         let gain = -scale * cross - scale * scale * square / 2.0;
         let unknowns = -hessian.solve(&(&self.gradient + scale * along));
         gain.is_finite().then_some(Step { scale, unknowns, gain })
+    }
+
+    /// True if the unknowns can make the same change of the whitened data, whatever their priors say: the gain of the
+    /// only sensor of a model with free masses, stiffnesses and damping only scales them.
+    fn imitates(&self, change: &DVector<f64>) -> bool {
+        if self.imitable.is_empty() {
+            return false;
+        }
+        let rest = change - &self.imitable * self.imitable.tr_mul(change);
+        rest.norm() <= ROUNDING * change.norm()
     }
 
     /// Sum of squares of the part of a residual change that no other unknown can imitate; `None` if the normal matrix
@@ -285,6 +302,19 @@ impl Tangent {
         discrepancy.whiten(residual.as_mut_slice());
         self.cost - discrepancy.cost() - residual.norm_squared() / 2.0
     }
+}
+
+/// An orthonormal basis of the columns. Without those that are zero or not finite.
+fn span(columns: &DMatrix<f64>) -> DMatrix<f64> {
+    let lengths: Vec<f64> = columns.column_iter().map(|column| column.norm()).collect();
+    let used = (0..lengths.len()).filter(|&k| lengths[k] > 0.0 && lengths[k].is_finite());
+    let columns: Vec<DVector<f64>> = used.map(|k| columns.column(k) / lengths[k]).collect();
+    if columns.is_empty() {
+        return DMatrix::zeros(0, 0);
+    }
+    let (q, r, _) = DMatrix::from_columns(&columns).col_piv_qr().unpack();
+    let kept: Vec<usize> = (0..r.nrows()).filter(|&k| r[(k, k)].abs() > ROUNDING).collect();
+    q.select_columns(&kept)
 }
 
 /// A grid point of a candidate: for each of its parameters, the signed share of the way from its start to a bound.
