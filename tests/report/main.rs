@@ -61,14 +61,26 @@ fn a_study_writes_all_that_it_promises() {
 }
 
 /// The pages that are looked at: width in pixels, and theme.
-const PAGES: [(u64, &str); 4] = [(1280, "light"), (1280, "dark"), (400, "light"), (400, "dark")];
+const PAGES: [(u64, &str); 2] = [(1280, "light"), (400, "dark")];
+/// The other pages, in tests of their own, since each takes seconds.
+const OTHER_PAGES: [(u64, &str); 2] = [(1280, "dark"), (400, "light")];
 
 #[test]
 fn the_report_is_whole_in_a_browser() {
+    report_is_whole(PAGES);
+}
+
+#[test]
+#[ignore = "a browser for each of more pages; .ci/run runs it"]
+fn the_report_is_whole_in_a_browser_in_other_ways() {
+    report_is_whole(OTHER_PAGES);
+}
+
+fn report_is_whole(pages: [(u64, &str); 2]) {
     let Some(browser) = browser_or_word() else { return };
     for (study, changed) in [(&NOTHING_MISSING, false), (&ONE_MISSING, true)] {
         let page = page(study);
-        for (width, theme) in PAGES {
+        for (width, theme) in pages {
             let found = look(&browser, &page, width, theme);
             let place = format!("{width} px, {theme}: {found}");
             check(&found, (width, &place), &STUDY);
@@ -230,6 +242,16 @@ fn units_change_everywhere() {
 /// What is after is with the best of several that the data cannot tell apart, and each of them is one of these.
 #[test]
 fn a_class_is_told_as_one_of_several() {
+    class_is_told(PAGES);
+}
+
+#[test]
+#[ignore = "a browser for each of more pages; .ci/run runs it"]
+fn a_class_is_told_as_one_of_several_in_other_ways() {
+    class_is_told(OTHER_PAGES);
+}
+
+fn class_is_told(pages: [(u64, &str); 2]) {
     let Some(browser) = browser_or_word() else { return };
     let Studied { folder, said } = two_sensors();
     let result: Value = serde_json::from_str(&fs::read_to_string(folder.join("study.json")).unwrap()).unwrap();
@@ -238,7 +260,7 @@ fn a_class_is_told_as_one_of_several() {
         format!("sensor gain at {}", own["at"].as_str().unwrap())
     });
     let page = page_in(&folder);
-    for (width, theme) in PAGES {
+    for (width, theme) in pages {
         let found = look(&browser, &page, width, theme);
         let place = format!("{width} px, {theme}: {found} {said}");
         check(
@@ -309,9 +331,19 @@ const COMPARED: [(&str, usize); 3] = [
 
 #[test]
 fn a_comparison_is_whole_in_a_browser() {
+    comparison_is_whole(PAGES);
+}
+
+#[test]
+#[ignore = "a browser for each of more pages; .ci/run runs it"]
+fn a_comparison_is_whole_in_a_browser_in_other_ways() {
+    comparison_is_whole(OTHER_PAGES);
+}
+
+fn comparison_is_whole(pages: [(u64, &str); 2]) {
     let Some(browser) = browser_or_word() else { return };
     for ((subject, sections), page) in COMPARED.iter().zip(&COMPARISONS) {
-        for (width, theme) in PAGES {
+        for (width, theme) in pages {
             let found = look(&browser, page, width, theme);
             let place = format!("{subject}, {width} px, {theme}: {found}");
             check(&found, (width, &place), &COMPARISON);
