@@ -196,15 +196,12 @@ fn the_slopes_along_the_errors_of_sensors_are_those_of_differences() {
     const STEP: f64 = 1e-4;
     for k in 0..fitted.coefficients.len() {
         let residual = |step: f64| {
-            let mut moved = fitted.coefficients.clone();
-            moved[k] += step;
-            let here = (&fitted.values, fitted.side.clone());
-            let residuals = fitted.residuals_of(model, here, (fitted.nuisance.clone(), &moved), evidence);
-            residuals.expect("they are finite")
+            let mut moved = fitted.clone();
+            moved.coefficients[k] += step;
+            moved.linearised(model, evidence).0
         };
         let expected = (residual(STEP) - residual(-STEP)) / (2.0 * STEP);
         let found = jacobian.column(fitted.free.len() + k);
-        assert!(expected.len() > jacobian.nrows() / 2, "rows of the data");
         // Where friction nearly sticks, a search ends elsewhere for the least change: of the others most are right.
         let mut errors: Vec<f64> = found
             .iter()

@@ -9,6 +9,8 @@ mod swept;
 mod browser;
 // The report on A4.
 mod paper;
+// Records over time.
+mod records;
 // Elasticities, their uncertainty and Sobol indices.
 mod sensitivities;
 // Responses that the page computes.
@@ -150,36 +152,6 @@ fn maps_tell_runs_and_axes_apart() {
     ] {
         assert_eq!(map(kind).last(), Some(&axis), "{kind}");
     }
-}
-
-/// Records are replayed over time, and the force of a damper over what moves it.
-#[test]
-fn records_are_drawn_beside_what_the_models_make_of_them() {
-    let Some(browser) = browser_or_word() else { return };
-    let study = Studied::new("mr_damper");
-    let found = look(&browser, &page(&study), 1280, "light");
-    let wanted = [
-        "record",
-        "record-velocity",
-        "record-displacement",
-        "gap-before",
-        "gap-after",
-    ];
-    check(&found, (1280, &found.to_string()), &wanted);
-    assert!(strings(&found["tables"]).contains(&"NRMS of each run"), "{found}");
-    let lead = found["paragraphs"][0].as_str().unwrap();
-    assert!(
-        lead.starts_with("Partly explained by ") && lead.ends_with("Large residuals remain."),
-        "{lead}"
-    );
-    let text = found["units"]["mm"].as_str().unwrap();
-    assert!(text.contains("sampled at 100\u{202f}Hz"), "{text}");
-    let printed: Vec<&str> = strings(&found["on_paper"]);
-    assert_eq!(
-        printed.iter().filter(|figure| **figure == "record").count(),
-        5,
-        "{printed:?}"
-    );
 }
 
 /// All levels of the rig lie over each other in one choice, and all estimates have their correlations in one table.
