@@ -205,6 +205,7 @@ fn standard_errors_cover_the_truth_as_often_as_they_say() {
 
 /// With white errors, and with errors that neighbouring lines share, of which independent lines would make too little.
 #[test]
+#[ignore = "24 bootstraps; .ci/run runs it"]
 fn bootstrap_intervals_cover_the_truth_as_often_as_they_say() {
     let model = chain(true);
     let (mut plan, mut random) = (plan(), Random(11));

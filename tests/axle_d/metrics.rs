@@ -99,6 +99,7 @@ fn exact(tolerance: f64) -> Settings {
 
 /// One parameter of each kind, on rides so exact that their differences have seven digits.
 #[test]
+#[ignore = "dozens of exact rides; .ci/run runs it"]
 fn derivatives_of_ridden_metrics_are_limits_of_differences() {
     let model = General::new();
     let mut ground = ground_of(&model, &cleat::parameters(), &COURSES[1..]).riding(exact(1e-14));

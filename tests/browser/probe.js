@@ -22,6 +22,9 @@
   const frame = () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done))));
 
   async function look() {
+    found.paragraphs = [...document.querySelectorAll('#verdict > p')].map((paragraph) => paragraph.textContent);
+    found.ofRig = [...document.querySelectorAll('#rig > p')].map((paragraph) => paragraph.textContent);
+    if (document.documentElement.dataset.probed === 'texts') return;
     await narrowed();
     const figures = [...document.querySelectorAll('[data-figure]')];
     const root = document.documentElement;
@@ -54,8 +57,6 @@
     found.tables = [...document.querySelectorAll('.table')].map((own) => own.getAttribute('aria-label'));
     found.headings = [...document.querySelectorAll('h3')].map((heading) => heading.textContent);
     found.captions = [...document.querySelectorAll('figcaption')].map((caption) => caption.textContent);
-    found.paragraphs = [...document.querySelectorAll('#verdict > p')].map((paragraph) => paragraph.textContent);
-    found.ofRig = [...document.querySelectorAll('#rig > p')].map((paragraph) => paragraph.textContent);
     found.keyboard = keyboard();
     found.zoom = await zoomed();
     found.maps = maps();

@@ -1,13 +1,17 @@
 //! Ctrl-C at any time: exit status 130, a word on what was written, and no file that is not whole.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::sync::LazyLock;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use crate::common::{copy, repository, run_line};
+use tempfile::TempDir;
+
+use crate::common::{repository, run_line};
+use crate::far_starts::write_noisy_road;
 
 /// Starts `qcar` and returns once it listens to Ctrl-C.
 fn started(folder: &Path, line: &str) -> Child {
@@ -71,46 +75,54 @@ fn stopped_on_the_way(folder: &Path) -> String {
     panic!("the base model was not fitted");
 }
 
-#[test]
-fn a_search_that_is_stopped_leaves_what_it_has_come_to() {
+/// What such a search has told, and the files that it has left.
+static STOPPED: LazyLock<(String, BTreeMap<PathBuf, Vec<u8>>)> = LazyLock::new(|| {
     let folder = repository();
     let told = stopped_on_the_way(folder.path());
+    let results = fs::read_dir(folder.path().join("results")).unwrap();
+    let names: Vec<_> = results.map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(names, ["unfinished"], "{told}");
+    let left = fs::read_dir(folder.path().join("results/unfinished")).unwrap();
+    let left = left.map(|entry| Path::new("results/unfinished").join(entry.unwrap().file_name()));
+    let read = |file: PathBuf| (file.clone(), fs::read(folder.path().join(file)).unwrap());
+    (told, left.map(read).collect())
+});
+
+/// A folder with what a search that was stopped has left, and what it has told.
+fn stopped() -> (TempDir, &'static str) {
+    let folder = repository();
+    fs::create_dir_all(folder.path().join("results/unfinished")).unwrap();
+    for (file, bytes) in &STOPPED.1 {
+        fs::write(folder.path().join(file), bytes).unwrap();
+    }
+    (folder, &STOPPED.0)
+}
+
+#[test]
+fn a_search_that_is_stopped_leaves_what_it_has_come_to() {
+    let (folder, told) = stopped();
     let left = folder.path().join("results/unfinished");
     for name in ["parameters.toml", "gap.svg"] {
         let text = fs::read_to_string(left.join(name)).unwrap();
         assert!(text.contains("unfinished: the search was stopped"), "{text}");
         assert!(told.contains(&format!("results/unfinished/{name}")), "{told}");
     }
-    assert_eq!(
-        fs::read_dir(folder.path().join("results")).unwrap().count(),
-        1,
-        "{told}"
-    );
     let again = "simulate models/campaigns/axle_c_study --params results/unfinished/parameters.toml";
     assert_eq!(run_line(folder.path(), again).status, 0);
-}
-
-/// A campaign with the first run of the shipped one alone.
-fn one_sweep(folder: &Path) {
-    let campaign = folder.join("one_sweep");
-    copy(&folder.join("models/campaigns/axle_a_rig"), &campaign);
-    let manifest = campaign.join("campaign.toml");
-    let text = fs::read_to_string(&manifest).unwrap();
-    let runs: Vec<&str> = text.split("[[run]]").take(2).collect();
-    fs::write(manifest, runs.join("[[run]]")).unwrap();
 }
 
 /// What else is there stays, be it by the name of a file that a search leaves.
 #[test]
 fn a_whole_search_takes_away_what_a_stopped_one_has_left() {
-    let folder = repository();
-    stopped_on_the_way(folder.path());
+    let (folder, _) = stopped();
     let unfinished = folder.path().join("results/unfinished");
     let own = ["my.axle", "notes.txt"].map(|name| unfinished.join(name));
     fs::write(&own[0], "axle my {}\n").unwrap();
     fs::copy(unfinished.join("parameters.toml"), &own[1]).unwrap();
-    one_sweep(folder.path());
-    let search = "discover one_sweep --out results";
+    let small = folder.path().join("small");
+    fs::create_dir(&small).unwrap();
+    write_noisy_road(&small);
+    let search = "discover small --out results";
     assert_eq!(run_line(folder.path(), search).status, 0);
     let files = fs::read_dir(&unfinished).unwrap().map(|file| file.unwrap().path());
     assert_eq!(files.collect::<BTreeSet<_>>(), BTreeSet::from(own.clone()));

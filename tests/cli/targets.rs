@@ -26,9 +26,20 @@ fn the_commands_of_the_page_run() {
     }
 }
 
-/// The keys of the file that the page shows are those that are read.
+/// The keys of the file that the page shows are those that are read. A solution space takes most of the time, and the
+/// example has its keys.
 #[test]
 fn the_file_of_the_page_is_read() {
+    is_read(|text| text.split("[space]").next().unwrap());
+}
+
+#[test]
+#[ignore = "a solution space of uncertain designs; .ci/run runs it"]
+fn the_file_of_the_page_is_read_with_its_solution_space() {
+    is_read(|text| text);
+}
+
+fn is_read(part: fn(&str) -> &str) {
     let folder = repository();
     let blocks = blocks("docs/targets.md");
     let shown = blocks.iter().find(|block| block.kind == "toml").unwrap();
@@ -40,7 +51,7 @@ fn the_file_of_the_page_is_read() {
         .replace("[\"B@80km/h\"]", "[]")
         .replace("[front]\n", "[front]\ngenerations = 3\n")
         .replace("[space]\nprobability = 0.95", "[space]\nprobability = 0.5");
-    fs::write(folder.path().join("targets.toml"), text).unwrap();
+    fs::write(folder.path().join("targets.toml"), part(&text)).unwrap();
     let ran = run_line(folder.path(), "target targets.toml");
     assert!(ran.status < 2, "{}", ran.stderr);
 }

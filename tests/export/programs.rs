@@ -1,8 +1,10 @@
 //! The programs that judge, where they are there.
 
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::{Arc, Mutex, OnceLock};
 
 /// Runs `qcar`, which must succeed.
 pub fn qcar(arguments: &[&str]) -> String {
@@ -21,8 +23,10 @@ pub fn python_with(package: &str, unchecked: &str) -> Option<PathBuf> {
     python_that(&format!("import {package}"), package, unchecked)
 }
 
-/// A Python that runs a statement, for which it needs packages.
+/// A Python that runs a statement, for which it needs packages. Many tests ask for the same, and a package can take
+/// seconds to import, so that each statement is run once.
 pub fn python_that(runs: &str, packages: &str, unchecked: &str) -> Option<PathBuf> {
+    static ASKED: Mutex<BTreeMap<String, Arc<OnceLock<Option<PathBuf>>>>> = Mutex::new(BTreeMap::new());
     let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/python/bin/python");
     let can = |python: &PathBuf| {
         Command::new(python)
@@ -30,7 +34,10 @@ pub fn python_that(runs: &str, packages: &str, unchecked: &str) -> Option<PathBu
             .output()
             .is_ok_and(|ran| ran.status.success())
     };
-    let found = [own, "python3".into()].into_iter().find(can);
+    let asked = Arc::clone(ASKED.lock().unwrap().entry(runs.to_owned()).or_default());
+    let found = asked
+        .get_or_init(|| [own, "python3".into()].into_iter().find(can))
+        .clone();
     if found.is_none() {
         say(&format!(
             "not checked: {unchecked}, since Python or one of its packages is absent (pip install {packages})"

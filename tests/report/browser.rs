@@ -48,17 +48,31 @@ fn program(name: &str) -> Option<PathBuf> {
 
 /// What the probe has found in a report: several tests ask for the same page, which is opened once for them all.
 pub fn look(browser: &Path, report: &str, width: u64, theme: &str) -> Value {
-    type Page = (String, u64, String);
-    static SEEN: Mutex<BTreeMap<Page, Arc<OnceLock<Value>>>> = Mutex::new(BTreeMap::new());
+    static SEEN: Once<(String, u64, String), Value> = Mutex::new(BTreeMap::new());
     let page = (report.to_owned(), width, theme.to_owned());
-    let found = Arc::clone(SEEN.lock().unwrap().entry(page).or_default());
-    found.get_or_init(|| open(browser, report, width, theme)).clone()
+    once(&SEEN, page, || open(browser, report, width, theme, "all"))
 }
 
-/// Opens a report with the probe before its scripts.
-fn open(browser: &Path, report: &str, width: u64, theme: &str) -> Value {
+/// The paragraphs of a report alone, in a part of the time.
+pub fn texts(browser: &Path, report: &str) -> Value {
+    static SEEN: Once<String, Value> = Mutex::new(BTreeMap::new());
+    once(&SEEN, report.to_owned(), || {
+        open(browser, report, 1280, "light", "texts")
+    })
+}
+
+/// What was made once, by what it was made of.
+type Once<Of, Made> = Mutex<BTreeMap<Of, Arc<OnceLock<Made>>>>;
+
+fn once<Of: Ord, Made: Clone>(known: &Once<Of, Made>, of: Of, make: impl FnOnce() -> Made) -> Made {
+    let made = Arc::clone(known.lock().unwrap().entry(of).or_default());
+    made.get_or_init(make).clone()
+}
+
+/// Opens a report with the probe before its scripts, which looks at `all` or at `texts`.
+fn open(browser: &Path, report: &str, width: u64, theme: &str, at: &str) -> Value {
     let folder = tempfile::tempdir().unwrap();
-    let themed = format!("<html lang=\"en\" data-theme=\"{theme}\">");
+    let themed = format!("<html lang=\"en\" data-theme=\"{theme}\" data-probed=\"{at}\">");
     let opened = report.replacen("<html lang=\"en\">", &themed, 1).replacen(
         "<style>",
         &format!("<script>{PROBE}</script><style>"),
@@ -84,6 +98,22 @@ fn open(browser: &Path, report: &str, width: u64, theme: &str) -> Value {
 
 /// A report as a PDF, read by `pdftotext` with these options.
 pub fn printed(browser: &Path, report: &str, options: &[&str]) -> String {
+    static PRINTED: Once<String, Vec<u8>> = Mutex::new(BTreeMap::new());
+    let folder = tempfile::tempdir().unwrap();
+    let pdf = folder.path().join("report.pdf");
+    fs::write(&pdf, once(&PRINTED, report.to_owned(), || print(browser, report))).unwrap();
+    let read = Command::new("pdftotext")
+        .args(options)
+        .arg(&pdf)
+        .arg("-")
+        .output()
+        .unwrap();
+    assert!(read.status.success(), "{}", String::from_utf8_lossy(&read.stderr));
+    String::from_utf8(read.stdout).unwrap()
+}
+
+/// The bytes of its PDF.
+fn print(browser: &Path, report: &str) -> Vec<u8> {
     let folder = tempfile::tempdir().unwrap();
     let [page, pdf] = ["report.html", "report.pdf"].map(|name| folder.path().join(name));
     fs::write(&page, report).unwrap();
@@ -93,14 +123,7 @@ pub fn printed(browser: &Path, report: &str, options: &[&str]) -> String {
         &page,
         &["--virtual-time-budget=10000", "--no-pdf-header-footer", &out],
     );
-    let read = Command::new("pdftotext")
-        .args(options)
-        .arg(&pdf)
-        .arg("-")
-        .output()
-        .unwrap();
-    assert!(read.status.success(), "{}", String::from_utf8_lossy(&read.stderr));
-    String::from_utf8(read.stdout).unwrap()
+    fs::read(pdf).unwrap()
 }
 
 fn run(browser: &Path, page: &Path, options: &[&str]) -> Output {

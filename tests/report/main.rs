@@ -9,6 +9,8 @@ mod swept;
 mod browser;
 // The report on A4.
 mod paper;
+// Records over time.
+mod records;
 // Elasticities, their uncertainty and Sobol indices.
 mod sensitivities;
 // Responses that the page computes.
@@ -61,14 +63,26 @@ fn a_study_writes_all_that_it_promises() {
 }
 
 /// The pages that are looked at: width in pixels, and theme.
-const PAGES: [(u64, &str); 4] = [(1280, "light"), (1280, "dark"), (400, "light"), (400, "dark")];
+const PAGES: [(u64, &str); 2] = [(1280, "light"), (400, "dark")];
+/// The other pages, in tests of their own, since each takes seconds.
+const OTHER_PAGES: [(u64, &str); 2] = [(1280, "dark"), (400, "light")];
 
 #[test]
 fn the_report_is_whole_in_a_browser() {
+    report_is_whole(PAGES);
+}
+
+#[test]
+#[ignore = "a browser for each of more pages; .ci/run runs it"]
+fn the_report_is_whole_in_a_browser_in_other_ways() {
+    report_is_whole(OTHER_PAGES);
+}
+
+fn report_is_whole(pages: [(u64, &str); 2]) {
     let Some(browser) = browser_or_word() else { return };
     for (study, changed) in [(&NOTHING_MISSING, false), (&ONE_MISSING, true)] {
         let page = page(study);
-        for (width, theme) in PAGES {
+        for (width, theme) in pages {
             let found = look(&browser, &page, width, theme);
             let place = format!("{width} px, {theme}: {found}");
             check(&found, (width, &place), &STUDY);
@@ -140,36 +154,6 @@ fn maps_tell_runs_and_axes_apart() {
     }
 }
 
-/// Records are replayed over time, and the force of a damper over what moves it.
-#[test]
-fn records_are_drawn_beside_what_the_models_make_of_them() {
-    let Some(browser) = browser_or_word() else { return };
-    let study = Studied::new("mr_damper");
-    let found = look(&browser, &page(&study), 1280, "light");
-    let wanted = [
-        "record",
-        "record-velocity",
-        "record-displacement",
-        "gap-before",
-        "gap-after",
-    ];
-    check(&found, (1280, &found.to_string()), &wanted);
-    assert!(strings(&found["tables"]).contains(&"NRMS of each run"), "{found}");
-    let lead = found["paragraphs"][0].as_str().unwrap();
-    assert!(
-        lead.starts_with("Partly explained by ") && lead.ends_with("Large residuals remain."),
-        "{lead}"
-    );
-    let text = found["units"]["mm"].as_str().unwrap();
-    assert!(text.contains("sampled at 100\u{202f}Hz"), "{text}");
-    let printed: Vec<&str> = strings(&found["on_paper"]);
-    assert_eq!(
-        printed.iter().filter(|figure| **figure == "record").count(),
-        5,
-        "{printed:?}"
-    );
-}
-
 /// All levels of the rig lie over each other in one choice, and all estimates have their correlations in one table.
 #[test]
 fn what_belongs_together_stands_in_one_figure() {
@@ -230,6 +214,16 @@ fn units_change_everywhere() {
 /// What is after is with the best of several that the data cannot tell apart, and each of them is one of these.
 #[test]
 fn a_class_is_told_as_one_of_several() {
+    class_is_told(PAGES);
+}
+
+#[test]
+#[ignore = "a browser for each of more pages; .ci/run runs it"]
+fn a_class_is_told_as_one_of_several_in_other_ways() {
+    class_is_told(OTHER_PAGES);
+}
+
+fn class_is_told(pages: [(u64, &str); 2]) {
     let Some(browser) = browser_or_word() else { return };
     let Studied { folder, said } = two_sensors();
     let result: Value = serde_json::from_str(&fs::read_to_string(folder.join("study.json")).unwrap()).unwrap();
@@ -238,7 +232,7 @@ fn a_class_is_told_as_one_of_several() {
         format!("sensor gain at {}", own["at"].as_str().unwrap())
     });
     let page = page_in(&folder);
-    for (width, theme) in PAGES {
+    for (width, theme) in pages {
         let found = look(&browser, &page, width, theme);
         let place = format!("{width} px, {theme}: {found} {said}");
         check(
@@ -309,9 +303,19 @@ const COMPARED: [(&str, usize); 3] = [
 
 #[test]
 fn a_comparison_is_whole_in_a_browser() {
+    comparison_is_whole(PAGES);
+}
+
+#[test]
+#[ignore = "a browser for each of more pages; .ci/run runs it"]
+fn a_comparison_is_whole_in_a_browser_in_other_ways() {
+    comparison_is_whole(OTHER_PAGES);
+}
+
+fn comparison_is_whole(pages: [(u64, &str); 2]) {
     let Some(browser) = browser_or_word() else { return };
     for ((subject, sections), page) in COMPARED.iter().zip(&COMPARISONS) {
-        for (width, theme) in PAGES {
+        for (width, theme) in pages {
             let found = look(&browser, page, width, theme);
             let place = format!("{subject}, {width} px, {theme}: {found}");
             check(&found, (width, &place), &COMPARISON);

@@ -6,18 +6,28 @@ use serde_json::Value;
 
 use super::browser::{browser_or_word, look, printed, printer_or_word};
 use super::studied::Studied;
-use super::{PAGES, check_page, figures, page, strings};
+use super::{OTHER_PAGES, PAGES, check_page, figures, page, strings};
 
 /// What of it is drawn.
 const DRAWN: [&str; 4] = ["tornado", "matrix", "shares", "sobol"];
 
 #[test]
 fn sensitivities_are_whole_in_a_browser() {
+    are_whole(PAGES);
+}
+
+#[test]
+#[ignore = "a browser for each of more pages; .ci/run runs it"]
+fn sensitivities_are_whole_in_a_browser_in_other_ways() {
+    are_whole(OTHER_PAGES);
+}
+
+fn are_whole(pages: [(u64, &str); 2]) {
     let Some(browser) = browser_or_word() else { return };
     let studied = Studied::sensitivities();
     let page = page(&studied);
     let count = metrics(&studied).len();
-    for (width, theme) in PAGES {
+    for (width, theme) in pages {
         let found = look(&browser, &page, width, theme);
         let place = format!("{width} px, {theme}: {found}");
         check_page(&found, (width, &place), &DRAWN);

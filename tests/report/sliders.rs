@@ -8,7 +8,7 @@ use qcar_runtime::response::ratio::ratio;
 use qcar_runtime::response::signal::driver;
 use serde_json::Value;
 
-use super::browser::{browser_or_word, look};
+use super::browser::{browser_or_word, look, texts};
 use super::{ONE_MISSING, page, strings};
 
 /// The parameter that the probe moves to the middle of its slider.
@@ -17,7 +17,7 @@ const MOVED: &str = "k_wheel_z";
 #[test]
 fn a_moved_parameter_moves_the_response_as_qcar_does() {
     let Some(browser) = browser_or_word() else { return };
-    let found = look(&browser, &page(&ONE_MISSING), 400, "light");
+    let found = look(&browser, &page(&ONE_MISSING), 400, "dark");
     let tried = &found["tried"];
     assert_eq!(
         (&tried["blank"], &tried["overflow"]),
@@ -45,7 +45,7 @@ fn a_nonlinear_model_has_a_word_in_place_of_sliders() {
     let linear = page(&ONE_MISSING);
     let nonlinear = linear.replace("const PROGRAM = ", "const PROGRAM = null;\nconst UNUSED = ");
     assert_ne!(linear, nonlinear);
-    let words = |page: &str| strings(&look(&browser, page, 400, "light")["ofRig"]).join(" ");
+    let words = |page: &str| strings(&texts(&browser, page)["ofRig"]).join(" ");
     assert!(words(&nonlinear).contains("There are no sliders here: this model is nonlinear"));
     assert!(!words(&linear).contains("no sliders"));
 }

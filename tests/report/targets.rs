@@ -8,16 +8,26 @@ use serde_json::Value;
 
 use super::browser::{browser_or_word, look};
 use super::studied::Studied;
-use super::{PAGES, check, page, sliders, strings};
+use super::{OTHER_PAGES, PAGES, check, page, sliders, strings};
 
 /// What of a report of targets is drawn.
 const DRAWN: [&str; 3] = ["front", "cut", "ride"];
 
 #[test]
 fn targets_are_whole_in_a_browser() {
+    are_whole(PAGES);
+}
+
+#[test]
+#[ignore = "a browser for each of more pages; .ci/run runs it"]
+fn targets_are_whole_in_a_browser_in_other_ways() {
+    are_whole(OTHER_PAGES);
+}
+
+fn are_whole(pages: [(u64, &str); 2]) {
     let Some(browser) = browser_or_word() else { return };
     let page = page(&Studied::targets());
-    for (width, theme) in PAGES {
+    for (width, theme) in pages {
         let found = look(&browser, &page, width, theme);
         let place = format!("{width} px, {theme}: {found}");
         check(&found, (width, &place), &DRAWN);

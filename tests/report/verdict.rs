@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::browser::{browser_or_word, look};
+use super::browser::{browser_or_word, look, texts};
 use super::{NOTHING_MISSING, ONE_MISSING, page};
 
 #[test]
@@ -106,7 +106,7 @@ fn a_fit_that_falls_is_explained() {
 
 /// The verdict's paragraphs.
 fn verdict(browser: &Path, page: &str) -> Vec<String> {
-    paragraphs(&look(browser, page, 1280, "light"))
+    paragraphs(&texts(browser, page))
 }
 
 fn paragraphs(found: &Value) -> Vec<String> {
