@@ -19,7 +19,7 @@ use std::path::Path;
 
 use qcar::catalogue;
 use qcar::parameters;
-use qcar_runtime::simulate::{Between, Reading, Recorded, replay};
+use qcar_runtime::simulate::{Accuracy, Between, Reading, Recorded, replay};
 use serde_json::Value;
 
 /// Sample rate, Hz.
@@ -100,6 +100,7 @@ fn respond(model: &str, values: &Path, force: &[f64]) -> Result<Vec<f64>, Box<dy
         band: (0.0, RATE),
         periodic: false,
         samples: force.len(),
+        accuracy: Accuracy::HIGH,
     };
     let mut replayed = replay(
         &*model,

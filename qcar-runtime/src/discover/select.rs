@@ -63,6 +63,7 @@ use super::numbers::{DOUBTFUL_BELOW, GREATER_PART, MOST_EFFECTS};
 use super::observe::{Evidence, PredictError, Quieter, Run, Stimulus};
 use super::posterior::{Explanation, Refit, Setting};
 use crate::campaign::Role;
+use crate::simulate::Accuracy;
 
 /// Searches for the effects that the model lacks. Calls `progress` with each step and each intermediate result. Removes
 /// the noise of recorded inputs from `evidence`, with a notice, if that makes the measured responses more probable.
@@ -100,13 +101,13 @@ pub fn discover(
                 return Ok::<_, PredictError>(found);
             }
             progress(Update::Step("repeating the search with a more accurate integration"));
-            *evidence = evidence.with_high_accuracy();
+            *evidence = evidence.integrated_with(Accuracy::HIGH);
             base = fitted(evidence)?;
         }
     };
     let (discovery, found) = search(base, None, evidence)?;
     if !evidence.could_be_more_accurate() {
-        quieter = quieter.map(Quieter::with_high_accuracy);
+        quieter = quieter.map(|own| own.integrated_with(Accuracy::HIGH));
     }
     // A large missing effect can hide the noise of the inputs, so the filtered inputs are tested again with the answer.
     let quieter = quieter.filter(|quieter| {

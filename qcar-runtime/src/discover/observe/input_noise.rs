@@ -19,6 +19,7 @@ use crate::mean::{deviation, rms};
 use crate::model::Model;
 use crate::random::SplitMix;
 use crate::response::parameters::Values;
+use crate::simulate::Accuracy;
 use crate::spectrum::{synthesize, transform};
 use crate::transmissibility::Point;
 
@@ -36,11 +37,11 @@ pub struct Quieter {
 }
 
 impl Quieter {
-    /// The same with records integrated accurately.
-    pub fn with_high_accuracy(self) -> Self {
+    /// The same with records integrated with this accuracy.
+    pub fn integrated_with(self, accuracy: Accuracy) -> Self {
         Self {
-            evidence: self.evidence.with_high_accuracy(),
-            drawn: self.drawn.with_high_accuracy(),
+            evidence: self.evidence.integrated_with(accuracy),
+            drawn: self.drawn.integrated_with(accuracy),
         }
     }
 

@@ -33,15 +33,15 @@ impl Evidence {
         limited
     }
 
-    /// Integrates records accurately.
-    pub fn with_high_accuracy(&self) -> Self {
-        let mut accurate = self.clone();
-        for run in &mut accurate.runs {
-            if let Stimulus::History { accuracy, .. } = &mut run.stimulus {
-                *accuracy = Accuracy::HIGH;
+    /// Integrates records with this accuracy.
+    pub fn integrated_with(&self, accuracy: Accuracy) -> Self {
+        let mut other = self.clone();
+        for run in &mut other.runs {
+            if let Stimulus::History { accuracy: own, .. } = &mut run.stimulus {
+                *own = accuracy;
             }
         }
-        accurate
+        other
     }
 
     /// True if a record can be integrated more accurately.

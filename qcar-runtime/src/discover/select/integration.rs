@@ -10,6 +10,7 @@ use super::best;
 use super::screen::Tangent;
 use super::set::Set;
 use crate::discover::observe::Evidence;
+use crate::simulate::Accuracy;
 
 /// Checks the sets of a search.
 pub struct AccuracyCheck<'a> {
@@ -48,18 +49,22 @@ impl<'a> AccuracyCheck<'a> {
     }
 
     /// Sum of squares of the error of the predictions of a set, in units of the noise and the discrepancy, that changes
-    /// of its unknowns cannot imitate; `None` if the motion diverges.
+    /// of its unknowns cannot imitate. `None` if it does not fall with the accuracy: the motion diverges, or is so
+    /// sensitive that no integration follows the one that was measured.
     fn error(&self, set: &Set) -> Option<f64> {
         let refit = &set.explanation.refit;
         let usual = set.steady(self.evidence);
         let hypothesis = set.assembly.hypothesis();
         let place = hypothesis.place(refit);
-        let residuals = |evidence: &Evidence| hypothesis.residuals_at(&place, refit, evidence);
-        let [usual_residuals, accurate] = [residuals(&usual)?, residuals(&usual.with_high_accuracy())?];
-        let error = (&accurate - usual_residuals).norm_squared();
-        if error <= self.limit {
-            return Some(error);
+        let residuals = |accuracy| hypothesis.residuals_at(&place, refit, &usual.integrated_with(accuracy));
+        let accurate = residuals(Accuracy::HIGH)?;
+        let error = |accuracy| Some((residuals(accuracy)? - &accurate).norm_squared());
+        let own = error(Accuracy::USUAL)?;
+        if own <= self.limit {
+            return Some(own);
         }
-        Tangent::new(refit, &set.assembly, &usual).independent_change(&accurate)
+        let falls = error(Accuracy::MEDIUM)? < own / 4.0;
+        let independent = || Tangent::new(refit, &set.assembly, &usual).independent_change(&accurate);
+        falls.then(independent).flatten()
     }
 }

@@ -25,6 +25,11 @@ impl Accuracy {
         tolerance: 1e-3,
         halvings: 4,
     };
+    /// Between the others, to see whether the error falls.
+    pub const MEDIUM: Self = Self {
+        tolerance: 1e-4,
+        halvings: 5,
+    };
     /// For laws that are sharp within a step, whose errors add up over a record.
     pub const HIGH: Self = Self {
         tolerance: 1e-5,
