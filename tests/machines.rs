@@ -151,23 +151,41 @@ fn a_compliant_damper_with_two_slopes_is_named() {
 #[test]
 #[ignore = "a whole search; .ci/run runs it"]
 fn a_stop_on_one_side_of_a_lightly_damped_mass_is_named() {
+    let folder = lightly_damped(|z, _| 2e5 * (z - 0.0012).max(0.0));
+    let answer = discover(folder.path(), None);
+    is_found(&answer, "bump_stop", &[("gap", 0.0012, 0.05), ("k_stop", 2e5, 0.05)]);
+}
+
+/// The same mass with a dry friction of 12 N that has risen to three quarters at 1 mm/s. The error of long steps would
+/// smooth it further, and an effect that enforces short ones would be named beside it.
+#[test]
+#[ignore = "a whole search; .ci/run runs it"]
+fn a_smooth_friction_of_a_lightly_damped_mass_is_named_alone() {
+    let folder = lightly_damped(|_, v| 12.0 * (v / 1e-3).tanh());
+    let answer = discover(folder.path(), None);
+    is_found(
+        &answer,
+        "coulomb_friction",
+        &[("f_coulomb", 12.0, 0.02), ("v_slip", 1e-3, 0.1)],
+    );
+}
+
+/// A campaign of a mass of 2 kg on 50 kN/m with 10 N s/m and a further law, which is driven by a force.
+fn lightly_damped(law: impl Fn(f64, f64) -> f64) -> tempfile::TempDir {
     let force = |(size, run): (f64, usize), t: f64| -> f64 {
         let sine = |k: usize| (TAU * (k as f64 + 0.5) * t + (k * k * (run + 3)) as f64).sin();
         (5..90).map(sine).sum::<f64>() * size
     };
     let runs = [(4.0, 0), (8.0, 1), (8.0, 2)].map(|run| {
-        let rates = |_: f64, [z, v]: [f64; 2], force: f64| {
-            let stop = 2e5 * (z - 0.0012).max(0.0);
-            [v, (force - 10.0 * v - 5e4 * z - stop) / 2.0]
-        };
-        let motion = integrate(rates, |t, _| force(run, t), (1.25e-4, 10, 3200));
+        let rates = |_: f64, [z, v]: [f64; 2], force: f64| [v, (force - 10.0 * v - 5e4 * z - law(z, v)) / 2.0];
+        let motion = integrate(rates, |t, _| force(run, t), (2.5e-5, 50, 3200));
         vec![
             ("force", 0.05, motion.iter().map(|(_, force)| *force).collect()),
             ("body", 1e-5, motion.iter().map(|(x, _)| x[0]).collect()),
         ]
     });
     let head = [
-        "format = 1\nname = \"stop\"\nmodel = \"one_mass\"\n".to_owned(),
+        "format = 1\nname = \"mass\"\nmodel = \"one_mass\"\n".to_owned(),
         parameter("m_body", 1.5, "kg", (0.2, 20.0)),
         parameter("c_body", 5.0, "N s/m", (0.1, 500.0)),
         parameter("k_body", 30e3, "N/m", (1e3, 1e6)),
@@ -177,8 +195,7 @@ fn a_stop_on_one_side_of_a_lightly_damped_mass_is_named() {
     ];
     let folder = tempfile::tempdir().expect("a folder");
     write(folder.path(), &head.concat(), (800.0, true), runs.into());
-    let answer = discover(folder.path(), None);
-    is_found(&answer, "bump_stop", &[("gap", 0.0012, 0.05), ("k_stop", 2e5, 0.05)]);
+    folder
 }
 
 /// Asserts that one effect is found, with these parameters within these relative errors.

@@ -160,3 +160,27 @@ fn slopes_of_a_link_alone_are_limits_of_differences() {
         }
     }
 }
+
+/// The model declares its constant force as known, and offers one as an effect. A campaign that fits the declared one
+/// would find both in every combination.
+#[test]
+fn a_constant_force_that_is_fitted_is_no_effect() {
+    let offers = |fit: bool| {
+        let folder = tempfile::tempdir().unwrap();
+        let parameter = |name: &str, unit: &str, fit: bool| {
+            format!("[parameters.{name}]\nvalue = 1.0\nunit = \"{unit}\"\nrange = [0.1, 10.0]\nfit = {fit}\n")
+        };
+        let parameters = [("m_body", "kg"), ("c_body", "N s/m"), ("k_body", "N/m")];
+        let mut text = "format = 1\nname = \"mass\"\nmodel = \"one_mass\"\n".to_owned();
+        text.extend(parameters.map(|(name, unit)| parameter(name, unit, true)));
+        text += &parameter("f_offset", "N", fit);
+        fs::write(folder.path().join("campaign.toml"), text).unwrap();
+        let campaign = Campaign::open(folder.path()).unwrap();
+        let bench = Bench::of_campaign(&campaign, None)
+            .map_err(|_| "the model compiles")
+            .unwrap();
+        bench.candidates().iter().any(|own| own.effect == "offset_force")
+    };
+    assert!(offers(false));
+    assert!(!offers(true));
+}

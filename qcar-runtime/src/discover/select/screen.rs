@@ -454,7 +454,9 @@ fn shifted(parameter: &Added, shift: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Point, is_force_strength};
+    use nalgebra::{DMatrix, DVector};
+
+    use super::{Point, is_force_strength, span};
     use crate::discover::candidate::{Added, ParameterRole};
 
     fn added(start: f64, role: ParameterRole, scales_force: bool) -> Added {
@@ -491,5 +493,15 @@ mod tests {
         assert_eq!(values(&all), [8.0, 3e4, 50.0, 0.01]);
         let ratio = added(0.5, strength, false);
         assert_eq!(values(&[ratio, stiffness]), [0.05, 3e5]);
+    }
+
+    /// The second column is twice the first, and the third is zero.
+    #[test]
+    fn a_span_has_no_direction_twice() {
+        let columns = DMatrix::from_row_slice(3, 4, &[1.0, 2.0, 0.0, 1e-3, 1.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let span = span(&columns);
+        assert_eq!(span.ncols(), 2);
+        let inside = DVector::from_vec(vec![3.0, -7.0, 0.0]);
+        assert!((&span * span.tr_mul(&inside) - &inside).norm() < 1e-12);
     }
 }
