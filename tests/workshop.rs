@@ -33,8 +33,12 @@ fn forms(model: &str, effect: &str) -> Vec<String> {
 #[test]
 fn forms_that_come_to_the_same_are_tried_once() {
     let (inside, across, beside) = ("in_damper", "across_strut", "between_wheel_and_body");
-    assert_eq!(forms("axle_c", "coulomb_friction"), [inside, across]);
-    assert_eq!(forms("axle_d", "coulomb_friction"), [inside, across, beside]);
+    let of = |forms: &[&str]| -> Vec<String> {
+        let smooth = forms.iter().map(|form| format!("smooth_{form}"));
+        forms.iter().map(|form| form.to_string()).chain(smooth).collect()
+    };
+    assert_eq!(forms("axle_c", "coulomb_friction"), of(&[inside, across]));
+    assert_eq!(forms("axle_d", "coulomb_friction"), of(&[inside, across, beside]));
 }
 
 /// On a post without a road, the tyre is a link like any other. Friction between wheel and body is that of the damper,
@@ -61,7 +65,14 @@ axle on_a_post {
         text: text.into(),
     };
     let model = qcar_dsl::compile::check(source, &|_, _| Err("one file".into())).unwrap();
-    let expected = [("tire", "in_damper"), ("tire", "across_strut"), ("damper", "in_damper")];
+    let expected = [
+        ("tire", "in_damper"),
+        ("tire", "across_strut"),
+        ("tire", "smooth_in_damper"),
+        ("tire", "smooth_across_strut"),
+        ("damper", "in_damper"),
+        ("damper", "smooth_in_damper"),
+    ];
     let expected = expected.map(|(at, form)| (at.to_string(), Some(form.to_string())));
     assert_eq!(candidates(model, "coulomb_friction"), expected);
 }
@@ -174,6 +185,10 @@ fn a_constant_force_that_is_fitted_is_no_effect() {
         let mut text = "format = 1\nname = \"mass\"\nmodel = \"one_mass\"\n".to_owned();
         text.extend(parameters.map(|(name, unit)| parameter(name, unit, true)));
         text += &parameter("f_offset", "N", fit);
+        text += "[[channel]]\nname = \"body\"\nlocation = \"body\"\nside = \"centre\"\naxis = \"z\"\n\
+                 quantity = \"displacement\"\nunit = \"m\"\n[[run]]\nkind = \"time_history\"\nfile = \"run.csv\"\n\
+                 role = \"fit\"\nsample_rate = 10.0\n";
+        fs::write(folder.path().join("run.csv"), "time,body\n0,0\n0.1,1\n").unwrap();
         fs::write(folder.path().join("campaign.toml"), text).unwrap();
         let campaign = Campaign::open(folder.path()).unwrap();
         let bench = Bench::of_campaign(&campaign, None)

@@ -295,11 +295,14 @@ fn an_effect_is_tried_in_each_form_that_the_model_allows() {
         let candidates = friction.candidates(&model(name), &|_| None);
         candidates.into_iter().map(|patched| patched.form).collect()
     };
-    let named = |form: &str| Some(form.to_string());
+    let and_smooth = |forms: &[&str]| -> Vec<Option<String>> {
+        let smooth = forms.iter().map(|form| Some(format!("smooth_{form}")));
+        forms.iter().map(|form| Some(form.to_string())).chain(smooth).collect()
+    };
     let (inside, across, beside) = ("in_damper", "across_strut", "between_wheel_and_body");
-    assert_eq!(forms("axle_c"), [inside, across, beside].map(named));
-    assert_eq!(forms("axle_c_rigid_tm"), [inside, beside].map(named));
-    assert_eq!(forms("one_mass"), [inside].map(named));
+    assert_eq!(forms("axle_c"), and_smooth(&[inside, across, beside]));
+    assert_eq!(forms("axle_c_rigid_tm"), and_smooth(&[inside, beside]));
+    assert_eq!(forms("one_mass"), and_smooth(&[inside]));
     assert_eq!(friction.places(&model("axle_c")), ["damper"]);
     assert!(friction.in_form("sideways").is_none());
 }

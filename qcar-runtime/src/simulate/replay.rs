@@ -3,6 +3,8 @@
 //! Inputs are known at nodes half a step apart, so that the classical Runge-Kutta method needs no interpolation. A step
 //! is halved if a law is too stiff for it.
 
+// Error and halvings of a step.
+mod accuracy;
 // Recorded inputs at the nodes of an integration.
 mod input;
 // States that decay within a step.
@@ -14,8 +16,8 @@ mod initial;
 // Derivatives of the signals, integrated with the motion.
 mod tangent;
 
+pub use accuracy::Accuracy;
 pub use input::{Between, Recorded};
-pub use stepper::Accuracy;
 pub use tangent::Direction;
 
 use std::cmp::Ordering;

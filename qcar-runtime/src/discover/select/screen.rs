@@ -173,7 +173,8 @@ pub struct Tangent {
     white: DVector<f64>,
     white_jacobian: DMatrix<f64>,
     hessian: Option<Cholesky<f64, Dyn>>,
-    /// An orthonormal basis of the changes of the whitened data that the unknowns can make, priors aside.
+    /// An orthonormal basis of the changes of the whitened data that the free parameters of the model can make, whatever
+    /// their priors say. Those of sensors and amplitudes are known from data sheets.
     imitable: DMatrix<f64>,
     /// Jᵀr of the whitened quantities.
     gradient: DVector<f64>,
@@ -209,7 +210,7 @@ impl Tangent {
         let data = evidence.of_role(Role::Fit).map(|(_, series)| series.residuals()).sum();
         Self {
             data,
-            imitable: span(&white_jacobian.rows(0, data).into_owned()),
+            imitable: span(&white_jacobian.view((0, 0), (data, refit.free.len())).into_owned()),
             hessian: gram(&white_jacobian).cholesky(),
             gradient: white_jacobian.tr_mul(&white),
             cost: known.cost() + white.norm_squared() / 2.0,
@@ -240,8 +241,8 @@ impl Tangent {
         gain.is_finite().then_some(Step { scale, unknowns, gain })
     }
 
-    /// True if the unknowns can make the same change of the whitened data, whatever their priors say: the gain of the
-    /// only sensor of a model with free masses, stiffnesses and damping only scales them.
+    /// True if free parameters of the model can make the same change of the whitened data, whatever their priors say: the
+    /// gain of the only sensor of a model with free masses, stiffnesses and damping only scales them.
     fn imitates(&self, change: &DVector<f64>) -> bool {
         if self.imitable.is_empty() {
             return false;
@@ -304,7 +305,7 @@ impl Tangent {
     }
 }
 
-/// An orthonormal basis of the columns. Without those that are zero or not finite.
+/// An orthonormal basis of the columns, without those that are zero or not finite.
 fn span(columns: &DMatrix<f64>) -> DMatrix<f64> {
     let lengths: Vec<f64> = columns.column_iter().map(|column| column.norm()).collect();
     let used = (0..lengths.len()).filter(|&k| lengths[k] > 0.0 && lengths[k].is_finite());

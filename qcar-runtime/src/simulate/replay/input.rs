@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Complex;
 
-use super::stepper::Accuracy;
+use super::accuracy::Accuracy;
 use crate::model::{About, InputKind, Quantity};
 use crate::spectrum::{synthesize, transform};
 

@@ -6,36 +6,10 @@
 //! ordinary differential equations I, section II.4). How each step was taken is stored: derivatives are those of the
 //! same steps.
 
+use super::accuracy::Accuracy;
 use super::decay::Decay;
 use crate::model::Model;
 use crate::solver::rk4;
-
-/// Accuracy of an integration.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Accuracy {
-    /// Largest error of a step, relative to the largest value of a state so far.
-    tolerance: f64,
-    /// Most halvings of a step for its sake.
-    halvings: u8,
-}
-
-impl Accuracy {
-    /// For smooth laws at the usual accuracy of sensors.
-    pub const USUAL: Self = Self {
-        tolerance: 1e-3,
-        halvings: 4,
-    };
-    /// Between the others, to see whether the error falls.
-    pub const MEDIUM: Self = Self {
-        tolerance: 1e-4,
-        halvings: 5,
-    };
-    /// For laws that are sharp within a step, whose errors add up over a record.
-    pub const HIGH: Self = Self {
-        tolerance: 1e-5,
-        halvings: 6,
-    };
-}
 
 /// Most halvings of a step that would otherwise diverge, as with a stiff friction at high speed. A choice: each further
 /// one admits twice the stiffness, for up to twice the work in fits that try it.
