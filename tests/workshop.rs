@@ -187,7 +187,7 @@ fn a_constant_force_that_is_fitted_is_no_effect() {
         text += &parameter("f_offset", "N", fit);
         text += "[[channel]]\nname = \"body\"\nlocation = \"body\"\nside = \"centre\"\naxis = \"z\"\n\
                  quantity = \"displacement\"\nunit = \"m\"\n[[run]]\nkind = \"time_history\"\nfile = \"run.csv\"\n\
-                 role = \"fit\"\nsample_rate = 10.0\n";
+                 role = \"fit\"\nsample_rate = 10.0\nband_limited = true\n";
         fs::write(folder.path().join("run.csv"), "time,body\n0,0\n0.1,1\n").unwrap();
         fs::write(folder.path().join("campaign.toml"), text).unwrap();
         let campaign = Campaign::open(folder.path()).unwrap();
