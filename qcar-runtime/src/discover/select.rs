@@ -6,6 +6,8 @@ mod unknowns;
 mod fidelity;
 // Models with effects, ready to be fitted.
 pub mod assembly;
+// A fit, linearised.
+mod tangent;
 // Score test of every candidate without a fit.
 mod screen;
 // Successive halving of the candidates.

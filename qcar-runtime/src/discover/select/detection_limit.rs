@@ -8,7 +8,8 @@ use rayon::prelude::*;
 
 use super::assembly::Assembly;
 use super::extend::log_prior;
-use super::screen::{Point, Tangent};
+use super::screen::Point;
+use super::tangent::Tangent;
 use crate::discover::answer::DetectionLimit;
 use crate::discover::candidate::Candidate;
 use crate::discover::numbers::Numbers;

@@ -7,8 +7,8 @@
 use rayon::prelude::*;
 
 use super::best;
-use super::screen::Tangent;
 use super::set::Set;
+use super::tangent::Tangent;
 use crate::discover::observe::Evidence;
 use crate::simulate::Accuracy;
 
