@@ -174,7 +174,12 @@ fn attempt(base: Set, mut known: Option<Set>, evidence: &Evidence, progress: Pro
         sets.extend(others);
     }
     accuracy.suffices(&sets)?;
-    let (mut discovery, found) = conclude(&sets, evidence);
+    let (mut discovery, mut found) = conclude(&sets, evidence);
+    if let Some(mended) = accuracy.mended(&sets[found]) {
+        accuracy.is_settled(&mended, &sets[found])?;
+        sets[found] = mended;
+        (discovery, found) = conclude(&sets, evidence);
+    }
     compare_with_law(&mut discovery, found, &sets, &mut law, evidence, progress);
     if discovery.verdict == Verdict::None {
         discovery.detection_limits = limits(&sets[best_base(&sets)], evidence);

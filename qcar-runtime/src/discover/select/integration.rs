@@ -4,6 +4,7 @@
 //! friction without any stiffness at rest is smoothed, and an effect beside it that enforces short steps would seem to
 //! explain the difference.
 
+use nalgebra::DVector;
 use rayon::prelude::*;
 
 use super::best;
@@ -48,23 +49,41 @@ impl<'a> AccuracyCheck<'a> {
         (!unchecked.par_iter().any(decides)).then_some(())
     }
 
+    /// The set fitted with a more accurate integration from its optimum, if that is more probable: where steps cannot follow
+    /// a sharp law, a fit ends at a smoother one. `None` if it is not, or if there is nothing to integrate.
+    pub fn mended(&self, set: &Set) -> Option<Set> {
+        if !self.evidence.could_be_more_accurate() {
+            return None;
+        }
+        let mended = set.fitted_to(&self.evidence.integrated_with(Accuracy::HIGH))?;
+        (mended.log_posterior() > set.log_posterior()).then_some(mended)
+    }
+
+    /// `None` if the set has become so much more probable that other sets could overtake it in the same way.
+    pub fn is_settled(&self, mended: &Set, before: &Set) -> Option<()> {
+        let gain = mended.log_posterior() - before.log_posterior();
+        (gain <= self.limit / 2.0).then_some(())
+    }
+
     /// Sum of squares of the error of the predictions of a set, in units of the noise and the discrepancy, that changes
-    /// of its unknowns cannot imitate. `None` if it does not fall with the accuracy: the motion diverges, or is so
-    /// sensitive that no integration follows the one that was measured.
+    /// of its unknowns cannot imitate; `None` if the whole error is small or does not fall with the accuracy.
     fn error(&self, set: &Set) -> Option<f64> {
-        let refit = &set.explanation.refit;
         let usual = set.steady(self.evidence);
+        let accurate = self.accurate_residuals(set, &usual)?;
+        Tangent::new(&set.explanation.refit, &set.assembly, &usual).independent_change(&accurate)
+    }
+
+    /// Residuals of a set with an accurate integration, in units of the noise. `None` if they hardly differ from the
+    /// `usual` ones, or if the difference does not fall with the accuracy: the motion diverges, or is so sensitive that no
+    /// integration follows the one that was measured.
+    fn accurate_residuals(&self, set: &Set, usual: &Evidence) -> Option<DVector<f64>> {
+        let refit = &set.explanation.refit;
         let hypothesis = set.assembly.hypothesis();
         let place = hypothesis.place(refit);
         let residuals = |accuracy| hypothesis.residuals_at(&place, refit, &usual.integrated_with(accuracy));
         let accurate = residuals(Accuracy::HIGH)?;
         let error = |accuracy| Some((residuals(accuracy)? - &accurate).norm_squared());
         let own = error(Accuracy::USUAL)?;
-        if own <= self.limit {
-            return Some(own);
-        }
-        let falls = error(Accuracy::MEDIUM)? < own / 4.0;
-        let independent = || Tangent::new(refit, &set.assembly, &usual).independent_change(&accurate);
-        falls.then(independent).flatten()
+        (own > self.limit && error(Accuracy::MEDIUM)? < own / 4.0).then_some(accurate)
     }
 }
