@@ -154,7 +154,7 @@ fn of_runs(campaign: Campaign, arguments: &Arguments, choices: &Choices) -> Resu
         posterior::expected_gains(
             bench.model(),
             refit,
-            &fitted.evidence,
+            &fitted.found.evidence,
             &arguments.parameters,
             on_progress,
         )

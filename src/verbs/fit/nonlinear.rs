@@ -38,7 +38,6 @@ pub(crate) struct Nonlinear {
     pub(crate) campaign: Campaign,
     bench: Bench,
     model: String,
-    pub(crate) evidence: Evidence,
     pub(crate) parameters: Vec<ParameterFit>,
     pub(super) starts: usize,
     pub(crate) found: MultiStart,
@@ -104,13 +103,12 @@ pub(crate) fn fit(mut campaign: Campaign, choices: &Choices) -> Result<Nonlinear
     campaign.notices.extend(evidence.notices.iter().cloned());
     let outside = campaign_out_of_range(&about, &campaign);
     campaign.notices.extend(outside);
-    let profiles = profiles(bench.model(), &found.explanation.refit, &evidence, &choices.profile);
+    let profiles = profiles(bench.model(), &found.explanation.refit, &found.evidence, &choices.profile);
     Ok(Nonlinear {
         profiles,
         bench,
         model: about.name.to_string(),
         parameters: parameters(&about, &setting, &found.explanation),
-        evidence,
         starts: plan.starts,
         found,
         seconds: begun.elapsed().as_secs_f64(),

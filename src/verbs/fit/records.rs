@@ -36,7 +36,7 @@ pub(super) fn known(mut plan: Plan, found: &Nonlinear) -> Plan {
 impl Nonlinear {
     /// True if a run records an excitation. Free decays have no transmissibilities.
     pub(super) fn is_driven(&self) -> bool {
-        let mut runs = self.evidence.runs.iter();
+        let mut runs = self.found.evidence.runs.iter();
         runs.any(|run| !run.stimulus.references().is_empty())
     }
 }
@@ -58,6 +58,6 @@ pub(super) fn take_over(fitted: &mut Fitted, found: Nonlinear) {
     fit.parameters = found.parameters;
     fitted.profiles = found.profiles;
     let notices = &mut fitted.campaign.notices;
-    notices.extend(found.evidence.notices);
+    notices.extend(found.found.evidence.notices);
     notices.push("the parameters are fitted to all runs as they are, and transmissibilities only compared".into());
 }

@@ -8,6 +8,7 @@ use qcar_runtime::discover::posterior::estimate_initial_states;
 use qcar_runtime::error::InputError;
 use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;
+use qcar_runtime::simulate::Accuracy;
 use qcar_runtime::transmissibility::{Point, signal};
 use serde::Serialize;
 
@@ -71,7 +72,7 @@ pub(super) fn records(
     alike.runs.retain(is_record);
     // No run is held out here: each is simulated from its own initial state to its end.
     alike.runs.iter_mut().for_each(|run| run.role = Role::Fit);
-    let evidence = Evidence::from_campaign(&alike, model.about())?;
+    let evidence = Evidence::from_campaign(&alike, model.about())?.integrated_with(Accuracy::HIGH);
     let simulated = simulated(model, values, &evidence)
         .map_err(|error| Failure::Input(format!("{}: {error}\n", campaign.manifest().display())))?;
     let mut records = Vec::new();

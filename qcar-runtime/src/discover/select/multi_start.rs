@@ -14,6 +14,7 @@ use crate::discover::observe::{Evidence, PredictError};
 use crate::discover::posterior::{Explanation, Given, Refit, Setting};
 use crate::fit::starts;
 use crate::least_squares::Bounds;
+use crate::simulate::Accuracy;
 
 /// Rounds and evaluations of the searches: of all starts, of the best half of them, and of the remaining minima. A
 /// choice that limits the time.
@@ -28,6 +29,8 @@ const SAME_PLACE: f64 = 3.0;
 
 /// The best explanation by a model, and its other local minima.
 pub struct MultiStart {
+    /// The data, with the accuracy of integration of the explanation.
+    pub evidence: Evidence,
     /// The explanation at the highest posterior found.
     pub explanation: Explanation,
     /// Other minima, the most probable first.
@@ -63,7 +66,9 @@ pub fn fit_from_starts(
     progress(Update::Step(&format!("searching from {count} starts")));
     let minima = minima(&hypothesis, spread(assembly.given(), count), &fidelity)?;
     progress(Update::Step("refining the best fit"));
-    let with_unsteady = hypothesis.explanation(minima[0].clone(), evidence)?.refit;
+    // Long steps smooth a sharp law, but they suffice to find the minimum.
+    let evidence = evidence.integrated_with(Accuracy::HIGH);
+    let with_unsteady = hypothesis.explanation(minima[0].clone(), &evidence)?.refit;
     // Subtract the non-steady part of the sweeps from the measurement; the fit compares steady harmonics only.
     let steady = Fidelity::of(&evidence.minus(&with_unsteady.unsteady)).fine;
     let refit = hypothesis.fit_to_convergence(&hypothesis.place(&with_unsteady), &steady, FINAL)?;
@@ -72,8 +77,9 @@ pub fn fit_from_starts(
         named: hypothesis.place(other).named,
     };
     Ok(MultiStart {
-        explanation: hypothesis.explanation(refit, evidence)?,
+        explanation: hypothesis.explanation(refit, &evidence)?,
         others: minima[1..].iter().map(other).collect(),
+        evidence,
     })
 }
 

@@ -7,6 +7,9 @@ pub struct Accuracy {
     pub(super) tolerance: f64,
     /// Most halvings of a step for its sake.
     pub(super) halvings: u8,
+    /// True if the error includes that of a law that jumps between two stages of a step. A step then has at least two
+    /// parts.
+    pub(super) sees_jumps: bool,
 }
 
 impl Accuracy {
@@ -14,15 +17,23 @@ impl Accuracy {
     pub const USUAL: Self = Self {
         tolerance: 1e-3,
         halvings: 4,
+        sees_jumps: false,
     };
     /// Between the others, to see whether the error falls.
     pub const MEDIUM: Self = Self {
         tolerance: 1e-4,
         halvings: 5,
+        sees_jumps: true,
     };
     /// For laws that are sharp within a step, whose errors add up over a record.
     pub const HIGH: Self = Self {
         tolerance: 1e-5,
         halvings: 6,
+        sees_jumps: true,
     };
+
+    /// Fewest halvings of a step.
+    pub(super) fn fewest(self) -> u8 {
+        u8::from(self.sees_jumps)
+    }
 }

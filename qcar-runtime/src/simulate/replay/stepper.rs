@@ -5,6 +5,10 @@
 //! third-order method. The difference of both methods is the controlled error (Hairer, Norsett, Wanner: Solving
 //! ordinary differential equations I, section II.4). How each step was taken is stored: derivatives are those of the
 //! same steps.
+//!
+//! It cannot see a law that jumps between two stages of a step, since all stages are then on one side of the jump or the
+//! other. In the fourth difference of the derivatives at the start, middle and end of two parts of a step the jump is
+//! fully visible, while for a smooth motion it is as small as the difference of both methods.
 
 use super::accuracy::Accuracy;
 use super::decay::Decay;
@@ -38,6 +42,8 @@ pub struct Stepper<'a> {
     /// Length of a whole step, s.
     length: f64,
     k: [Vec<f64>; 5],
+    /// Derivatives at the start and in the middle of the part before the last.
+    before: [Vec<f64>; 2],
     x: Vec<f64>,
     /// Inputs at the start, the middle and the end of a part of a step.
     inputs: [Vec<f64>; 3],
@@ -67,13 +73,14 @@ impl<'a> Stepper<'a> {
             accuracy,
             length,
             k: std::array::from_fn(|_| vec![0.0; states]),
+            before: std::array::from_fn(|_| vec![0.0; states]),
             x: vec![0.0; states],
             inputs: std::array::from_fn(|_| vec![0.0; inputs]),
             last: vec![0.0; inputs],
             knows_slope: false,
             start: std::array::from_fn(|_| vec![0.0; states]),
             largest: vec![0.0; states],
-            halvings: 0,
+            halvings: accuracy.fewest(),
         }
     }
 
@@ -109,7 +116,7 @@ impl<'a> Stepper<'a> {
                 let sizes = self.largest.iter_mut().zip(&*x);
                 sizes.for_each(|(largest, x)| *largest = largest.max(x.abs()));
                 if error < ROOM {
-                    self.halvings = halvings.saturating_sub(1);
+                    self.halvings = halvings.saturating_sub(1).max(self.accuracy.fewest());
                 }
                 let decays = self.may_decay;
                 self.may_decay = self.decays;
@@ -137,13 +144,16 @@ impl<'a> Stepper<'a> {
         self.decays = false;
         let error = if halvings == 0 {
             self.part(inputs, self.length, x);
-            self.error(self.length, x)
+            self.error(self.length, x, false)
         } else {
             let parts = 1_u32 << halvings;
             let length = self.length / f64::from(parts);
             let errors = (0..parts).map(|part| {
+                for (before, stage) in self.before.iter_mut().zip([0, 2]) {
+                    before.copy_from_slice(&self.k[stage]);
+                }
                 self.short_part(inputs, (part, parts), x);
-                self.error(length, x)
+                self.error(length, x, part > 0 && self.accuracy.sees_jumps)
             });
             // NaN must not count as a small error.
             errors.fold(0.0, |a, b| if b.is_nan() { f64::INFINITY } else { a.max(b) })
@@ -182,13 +192,18 @@ impl<'a> Stepper<'a> {
         self.knows_slope = true;
     }
 
-    /// Error of the last part, of length `h` (s) to state `x`, relative to the tolerance.
-    fn error(&self, h: f64, x: &[f64]) -> f64 {
+    /// Error of the last part, of length `h` (s) to state `x`, relative to the tolerance, or that of a jump in this part or
+    /// the one before.
+    fn error(&self, h: f64, x: &[f64], sees_jumps: bool) -> f64 {
         let error = |i: usize| {
             let size = self.largest[i].max(x[i].abs());
-            let [last, end] = [self.k[3][i], self.k[4][i]];
+            let [start, _, middle, last, end] = self.k.each_ref().map(|k| k[i]);
             let error = if self.may_decay {
                 self.decay.error(i, last, end, x[i]).abs()
+            } else if sees_jumps {
+                let before = self.before[0][i] - 4.0 * self.before[1][i];
+                let jump = before + 6.0 * start - 4.0 * middle + end;
+                h / 6.0 * (last - end).abs().max(jump.abs())
             } else {
                 (h / 6.0 * (last - end)).abs()
             };

@@ -108,7 +108,7 @@ impl Nonlinear {
     }
 
     fn left(&self) -> Vec<SensorResidual> {
-        let left = sensor_residuals::left(&self.evidence, [&self.found.explanation; 2]);
+        let left = sensor_residuals::left(&self.found.evidence, [&self.found.explanation; 2]);
         let own = |left: sensor_residuals::SensorResidual| SensorResidual {
             channel: left.channel,
             kind: left.kind,
