@@ -6,6 +6,7 @@ mod evidence;
 mod examples;
 #[path = "family/main.rs"]
 mod family;
+mod held_out_records;
 mod machines;
 mod replay;
 mod rig_fit;

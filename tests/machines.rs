@@ -165,7 +165,11 @@ fn a_stop_on_one_side_of_a_lightly_damped_mass_is_named() {
 fn a_smooth_friction_of_a_lightly_damped_mass_is_named_alone() {
     let folder = lightly_damped(|_, v| 12.0 * (v / 1e-3).tanh());
     let answer = discover(folder.path(), None);
-    is_found(&answer, "coulomb_friction", &[("f_coulomb", 12.0, 0.02), ("v_slip", 1e-3, 0.1)]);
+    is_found(
+        &answer,
+        "coulomb_friction",
+        &[("f_coulomb", 12.0, 0.02), ("v_slip", 1e-3, 0.1)],
+    );
 }
 
 #[test]
@@ -220,7 +224,7 @@ fn lightly_damped(law: impl Fn(f64, f64) -> f64) -> tempfile::TempDir {
 }
 
 /// Asserts that one effect is found, with these parameters within these relative errors.
-fn is_found(answer: &Value, name: &str, parameters: &[(&str, f64, f64)]) {
+pub fn is_found(answer: &Value, name: &str, parameters: &[(&str, f64, f64)]) {
     assert_eq!(answer["verdict"], "found", "{answer}");
     assert_eq!(answer["effects"].as_array().map(Vec::len), Some(1), "{answer}");
     let effect = &answer["effects"][0];

@@ -635,6 +635,7 @@ const STACK: &str = "axle stack { \"Three masses on a shaker\"
 #[test]
 fn without_a_road_a_mass_may_hang_on_any_other() {
     let stack = written(STACK);
+    let lying = written(&STACK.replace("direction z", "direction x"));
     let forms = |name: &str, model: &Checked| -> Vec<(String, String)> {
         let candidates = effect(name).candidates(model, &|_| None).into_iter();
         candidates.map(|own| (own.place, own.form.unwrap())).collect()
@@ -650,9 +651,12 @@ fn without_a_road_a_mass_may_hang_on_any_other() {
         ("top", "soft_fore_and_aft"),
         ("top", "attached"),
     ];
-    assert_eq!(forms("secondary_resonator", &stack), listed(&elsewhere));
     let on_the_body = [("low", "within_body"), ("low", "attached")];
-    assert_eq!(forms("suspended_mass", &stack), listed(&on_the_body));
+    // What an effect does along x is in addition to what it does along the axle's own direction.
+    for model in [&stack, &lying] {
+        assert_eq!(forms("secondary_resonator", model), listed(&elsewhere));
+        assert_eq!(forms("suspended_mass", model), listed(&on_the_body));
+    }
     let on_a_car = [("wheel", "vertical"), ("wheel", "soft_fore_and_aft")];
     assert_eq!(forms("secondary_resonator", &model("quarter_car")), listed(&on_a_car));
 }

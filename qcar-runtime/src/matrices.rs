@@ -1,6 +1,8 @@
 //! The matrices of a model at rest.
 
-use crate::model::{About, Model};
+use nalgebra::DMatrix;
+
+use crate::model::{About, Matrix, Model};
 
 fn rest(about: &About) -> (Vec<f64>, Vec<f64>) {
     (vec![0.0; about.states.len()], vec![0.0; about.inputs.len()])
@@ -12,6 +14,18 @@ pub fn at_rest(model: &(impl Model + ?Sized), p: &[f64]) -> Vec<f64> {
     let mut nonzeros = vec![0.0; model.about().matrices.len()];
     model.matrices(p, &x, &u, &mut nonzeros);
     nonzeros
+}
+
+/// The matrix A at rest.
+pub fn dynamics(model: &(impl Model + ?Sized), p: &[f64]) -> DMatrix<f64> {
+    let states = model.about().states.len();
+    let mut a = DMatrix::zeros(states, states);
+    for (entry, value) in model.about().matrices.iter().zip(at_rest(model, p)) {
+        if entry.matrix == Matrix::A {
+            a[(usize::from(entry.row), usize::from(entry.column))] = value;
+        }
+    }
+    a
 }
 
 /// The nonzeros of their parameter Jacobians at rest, in the order of [`About::sensitivities`].

@@ -52,7 +52,8 @@ fn changes<'a>(bindings: &Bindings<'a>) -> Vec<(String, &'a Change)> {
                 let absent = without
                     .iter()
                     .all(|name_| !bindings.base.declares(&name.text, &name_.text));
-                if absent && bindings.moves_along(&name.text) {
+                let is_another = name.text != bindings.place.direction;
+                if is_another && absent && bindings.moves_along(&name.text) {
                     all.extend(body.iter().map(|inner| (name.text.clone(), inner)));
                 }
             }

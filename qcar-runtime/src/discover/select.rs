@@ -54,7 +54,10 @@ use held_out::supported_part;
 use integration::AccuracyCheck;
 use probability::probabilities;
 use reduce::reductions;
-use set::{Set, best_base, excess, explained_share, is_missing, keep_best, leaves_more_than_noise, most_probable};
+use set::{
+    Set, best_base, excess, explained_share, is_missing, keep_best, leaves_more_than_noise, most_probable,
+    predicts_worse_than_noise,
+};
 use verdict::conclude;
 
 pub use multi_start::{Minimum, MultiStart, fit_from_starts};
@@ -228,7 +231,7 @@ fn limits(base: &Set, evidence: &Evidence) -> Vec<DetectionLimit> {
 /// effect gains below that comes from noise of the recorded inputs, mains hum or drift.
 fn lacks_nothing(set: &Set, evidence: &Evidence) -> bool {
     let is_record = |run: &Run| matches!(run.stimulus, Stimulus::History { .. });
-    let leaves_noise = !leaves_more_than_noise(set, evidence) && excess(&set.explanation, evidence) <= 0.0;
+    let leaves_noise = !leaves_more_than_noise(set, evidence) && !predicts_worse_than_noise(set, evidence);
     evidence.runs.iter().all(is_record) && leaves_noise
 }
 

@@ -7,6 +7,8 @@
 mod accuracy;
 // Recorded inputs at the nodes of an integration.
 mod input;
+// States that move along where a record restarts.
+mod carried;
 // States that decay within a step.
 mod decay;
 // Steps of the Runge-Kutta method, with step control.
@@ -28,6 +30,7 @@ use rayon::prelude::*;
 use super::failure::{SimulateError, positive};
 use crate::model::{About, Model, Quantity, SignalKind, StateKind};
 use crate::response::signal::{SignalError, missing, output_of};
+use carried::Carried;
 use initial::FreeResponse;
 use input::rows;
 use stepper::{Stepper, Taken};
@@ -53,6 +56,22 @@ pub struct Replay<'a> {
     readings: Vec<Reading>,
     /// The inputs at each node.
     nodes: OnceLock<Instants>,
+}
+
+/// Deviation of a state from its measured value, or from rest, where a record begins or restarts.
+#[derive(Clone, Copy, Debug)]
+pub struct Deviation {
+    /// The sample.
+    pub sample: usize,
+    /// Position of the state.
+    pub state: usize,
+    /// Deviation, in the unit of the state.
+    pub by: f64,
+}
+
+/// The deviations at a sample.
+fn at(sample: usize, deviations: &[Deviation]) -> impl Iterator<Item = &Deviation> {
+    deviations.iter().filter(move |own| own.sample == sample)
 }
 
 /// Result of a replay.
@@ -118,9 +137,8 @@ impl<'a> Replay<'a> {
         }
     }
 
-    /// The signals of a parameter set. `begin` has states with the deviation of their initial value from the measured
-    /// one.
-    pub fn run(&self, p: &[f64], begin: &[(usize, f64)]) -> Replayed {
+    /// The signals of a parameter set.
+    pub fn run(&self, p: &[f64], begin: &[Deviation]) -> Replayed {
         let rest = vec![0.0; self.model.about().states.len()];
         let mut replayed = self.advance(p, rest, begin);
         let most = if self.how.periodic { PERIODS } else { 0 };
@@ -132,14 +150,15 @@ impl<'a> Replay<'a> {
         replayed
     }
 
-    /// Derivative of each signal of a replay along some directions, for each of these.
+    /// Derivative of each signal of a replay along some directions, for each of these. Along an initial state, it is that
+    /// by the last of its values that were set before.
     ///
     /// Those by initial states of a linear model without resets are its free responses. All others are integrated with
     /// the motion; if it repeats, for as many periods as the replay took to repeat.
     pub fn along(
         &self,
         base: &Replayed,
-        (p, begin): (&[f64], &[(usize, f64)]),
+        (p, begin): (&[f64], &[Deviation]),
         directions: &[Direction],
     ) -> Vec<Vec<Vec<f64>>> {
         let runs_freely = self.model.about().linear && self.restarts.iter().all(|(sample, _)| *sample == 0);
@@ -166,14 +185,15 @@ impl<'a> Replay<'a> {
     fn follow(
         &self,
         base: &Replayed,
-        (p, begin): (&[f64], &[(usize, f64)]),
+        (p, begin): (&[f64], &[Deviation]),
         directions: &[Direction],
     ) -> Vec<Vec<Vec<f64>>> {
         let mut tangent = Tangent::new(self.model, p, directions, &self.readings);
         let mut signals = Vec::new();
+        let carried = self.carried(p);
         for period in 1..=base.periods {
             let begin = Some(begin).filter(|_| period == 1);
-            signals = self.differentiate(&mut tangent, begin, (base, period));
+            signals = self.differentiate((&mut tangent, &carried), begin, (base, period));
         }
         let of_direction = |lane: usize| {
             let own = signals.iter_mut().skip(lane).step_by(directions.len());
@@ -186,8 +206,8 @@ impl<'a> Replay<'a> {
     /// for each reading and direction.
     fn differentiate(
         &self,
-        tangent: &mut Tangent<'_>,
-        begin: Option<&[(usize, f64)]>,
+        (tangent, carried): (&mut Tangent<'_>, &Carried),
+        begin: Option<&[Deviation]>,
         (base, period): (&Replayed, usize),
     ) -> Vec<Vec<f64>> {
         let steps = steps(self.how.rate);
@@ -203,11 +223,15 @@ impl<'a> Replay<'a> {
                 tangent.follow(&taken, &mut signals);
                 taken.clear();
             }
-            for &(state, value) in restart.iter().flat_map(|(_, seen)| seen) {
-                tangent.set(state, value);
+            let seen = restart.map_or(&[][..], |(_, seen)| seen);
+            let with = |state| if sample == 0 { &[] } else { carried.with(state) };
+            for &(state, value) in seen {
+                tangent.set(state, value, with(state));
             }
-            if let Some(begin) = begin.filter(|_| sample == 0) {
-                tangent.begin(begin);
+            if let Some(begin) = begin.filter(|_| sample == 0 || restart.is_some()) {
+                at(sample, begin).for_each(|own| tangent.deviate(own.state, own.by, with(own.state)));
+                let begins = |state| sample == 0 || seen.iter().any(|(own, _)| *own == state);
+                tangent.begin(|state| begins(state).then(|| with(state)));
             }
             // The replay has kept the states of its last period alone.
             let known = (period == base.periods).then(|| base.states.at(sample));
@@ -239,6 +263,15 @@ impl<'a> Replay<'a> {
         (0..states.len()).map(of_state).collect()
     }
 
+    /// What moves along with the states that are set after the beginning.
+    fn carried(&self, p: &[f64]) -> Carried {
+        let later = self.restarts.iter().filter(|(sample, _)| *sample > 0);
+        let mut set: Vec<usize> = later.flat_map(|(_, seen)| seen).map(|(state, _)| *state).collect();
+        set.sort_unstable();
+        set.dedup();
+        Carried::new(self.model, p, &set)
+    }
+
     /// The inputs of the model at each node.
     fn inputs(&self, steps: usize) -> Instants {
         let rows = rows(self.model.about(), &self.recorded, &self.how, 2 * steps);
@@ -250,11 +283,12 @@ impl<'a> Replay<'a> {
     }
 
     /// Integrates from a state with some changed values.
-    fn advance(&self, p: &[f64], mut x: Vec<f64>, begin: &[(usize, f64)]) -> Replayed {
+    fn advance(&self, p: &[f64], mut x: Vec<f64>, begin: &[Deviation]) -> Replayed {
         let steps = steps(self.how.rate);
         let inputs = self.nodes.get_or_init(|| self.inputs(steps));
         let mut restarts = self.restarts.iter().peekable();
         let mut y = vec![0.0; self.model.about().outputs.len()];
+        let carried = self.carried(p);
         let mut stepper = Stepper::new(self.model, p, 1.0 / (self.how.rate * steps as f64), self.how.accuracy);
         let count = inputs.count();
         let mut taken = Vec::with_capacity(count / 2);
@@ -262,12 +296,20 @@ impl<'a> Replay<'a> {
         let mut states = Vec::with_capacity(x.len() * self.how.samples);
         for first in (0..count).step_by(2 * steps) {
             let sample = first / (2 * steps);
+            let with = |state| if sample == 0 { &[] } else { carried.with(state) };
             if let Some((_, seen)) = restarts.next_if(|(at, _)| *at == sample) {
-                seen.iter().for_each(|&(state, value)| x[state] = value);
+                for &(state, value) in seen {
+                    let by = value - x[state];
+                    x[state] = value;
+                    with(state).iter().for_each(|&(other, factor)| x[other] += factor * by);
+                }
                 stepper.forget();
             }
-            if sample == 0 {
-                begin.iter().for_each(|&(state, by)| x[state] += by);
+            for own in at(sample, begin) {
+                x[own.state] += own.by;
+                with(own.state)
+                    .iter()
+                    .for_each(|&(other, factor)| x[other] += factor * own.by);
             }
             stepper.outputs(&x, inputs.at(first), &mut y);
             for (signal, reading) in signals.iter_mut().zip(&self.readings) {

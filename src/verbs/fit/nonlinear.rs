@@ -103,7 +103,12 @@ pub(crate) fn fit(mut campaign: Campaign, choices: &Choices) -> Result<Nonlinear
     campaign.notices.extend(evidence.notices.iter().cloned());
     let outside = campaign_out_of_range(&about, &campaign);
     campaign.notices.extend(outside);
-    let profiles = profiles(bench.model(), &found.explanation.refit, &found.evidence, &choices.profile);
+    let profiles = profiles(
+        bench.model(),
+        &found.explanation.refit,
+        &found.evidence,
+        &choices.profile,
+    );
     Ok(Nonlinear {
         profiles,
         bench,

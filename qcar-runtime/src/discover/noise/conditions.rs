@@ -7,7 +7,7 @@ use nalgebra::Complex;
 
 use super::calibration::Form;
 use super::nuisance::{InitialState, Nuisance};
-use crate::discover::observe::{Evidence, Kind, Prediction, Run, Series, Stimulus, TestConditions};
+use crate::discover::observe::{Evidence, Initial, Kind, Prediction, Run, Series, Stimulus, TestConditions};
 use crate::transmissibility::Point;
 
 impl Nuisance {
@@ -30,7 +30,12 @@ impl Nuisance {
         };
         let initial_states = |run: &Run| {
             let own = self.initial_states_of(run);
-            own.map(|(k, own)| (own.state.clone(), coefficients[k])).collect()
+            let at_start = |(k, own): (usize, &InitialState)| Initial {
+                sample: 0,
+                state: own.state.clone(),
+                by: coefficients[k],
+            };
+            own.map(at_start).collect()
         };
         TestConditions {
             delays: evidence.series.iter().map(delay).collect(),

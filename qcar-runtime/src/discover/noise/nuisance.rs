@@ -12,7 +12,7 @@ use super::calibration::{AccuracyClass, Form, SENSOR, SHELVES};
 use crate::campaign::{Axis, Role};
 use crate::discover::observe::{Evidence, Kind, Run, Series, Stimulus};
 use crate::mean::mean;
-use crate::model::{About, State};
+use crate::model::Model;
 use crate::transmissibility::Point;
 
 /// Nuisance parameters of all sensors of the evidence, and the initial states of its records.
@@ -50,12 +50,12 @@ pub enum Known {
 }
 
 /// Initial state of a record, as the deviation from the sensor reading at the first sample, or from rest without such a
-/// sensor.
+/// sensor; or the zero of a sensor in this record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InitialState {
     /// The run, by its file.
     pub run: String,
-    /// Name of the state in the model.
+    /// Name of the state in the model, or of the zero.
     pub state: String,
     /// Prior standard deviation, in the unit of the state.
     pub sigma: f64,
@@ -118,22 +118,19 @@ impl Nuisance {
         Some(self)
     }
 
-    /// Replaces the initial states by those of a model in the fitted records.
-    pub fn with_initial_states(mut self, about: &About, evidence: &Evidence) -> Self {
+    /// Replaces the initial states by those of a model in the fitted records, for a value of each parameter.
+    pub fn with_initial_states(mut self, model: &dyn Model, p: &[f64], evidence: &Evidence) -> Self {
         let fitted = evidence.runs.iter().filter(|run| run.role == Role::Fit);
         let of_run = |run: &Run| {
             let Stimulus::History { spread, .. } = &run.stimulus else {
                 return Vec::new();
             };
-            let states = about.states.iter();
-            let initial_state = |state: &State| {
-                Some(InitialState {
-                    run: run.name.clone(),
-                    state: state.name.to_string(),
-                    sigma: spread.sigma(state)?,
-                })
+            let initial_state = |(state, sigma)| InitialState {
+                run: run.name.clone(),
+                state,
+                sigma,
             };
-            states.filter_map(initial_state).collect()
+            spread.unknown(model, p).into_iter().map(initial_state).collect()
         };
         self.initial_states = fitted.flat_map(of_run).collect();
         self

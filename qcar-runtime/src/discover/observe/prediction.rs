@@ -63,13 +63,23 @@ pub struct TestConditions {
     pub delays: Vec<f64>,
     /// For each run, the factor of each true excitation on that of its reference sensor; missing entries are 1.
     pub drive: Vec<Vec<f64>>,
-    /// For each run, states with their deviations from the sensor reading at the first sample, or from rest without a
-    /// sensor, SI; missing entries are zero.
-    pub initial_states: Vec<Vec<(String, f64)>>,
+    /// For each run, the initial states; missing entries are zero.
+    pub initial_states: Vec<Vec<Initial>>,
+}
+
+/// Deviation of a state from the sensor reading, or from rest without a sensor, where a record begins or restarts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Initial {
+    /// The sample.
+    pub sample: usize,
+    /// Name of the state.
+    pub state: String,
+    /// Deviation, SI.
+    pub by: f64,
 }
 
 impl TestConditions {
-    pub(super) fn initial_states_of(&self, run: usize) -> &[(String, f64)] {
+    pub(super) fn initial_states_of(&self, run: usize) -> &[Initial] {
         self.initial_states.get(run).map_or(&[], Vec::as_slice)
     }
 

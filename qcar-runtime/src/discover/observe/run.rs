@@ -13,7 +13,7 @@ pub use band::Band;
 pub use means::{Means, Pulses};
 pub use passage::Passage;
 pub(super) use passage::{COARSE_POINTS, FINE_POINTS, SEARCH_STEP_LIMIT, STEP_LIMIT};
-pub use restart::{Restart, Spread, measures};
+pub use restart::{Restart, Spread, measures, zero_of};
 
 use std::ops::Range;
 use std::sync::Arc;

@@ -84,11 +84,17 @@ fn part(run: &Run, series: &[&Series], window: Range<usize>) -> Option<(Run, Vec
     let mut part = run.clone();
     part.name = format!("{} from sample {}", run.name, window.start);
     let Stimulus::History {
-        inputs, rate, restarts, ..
+        inputs,
+        rate,
+        restarts,
+        spread,
+        ..
     } = &mut part.stimulus
     else {
         return None;
     };
+    // The zero of a sensor does not change within a record, and the initial states of a window make up for it.
+    spread.zeros.clear();
     let time = |sample: usize| inputs.start + sample as f64 / *rate;
     let half = 0.5 / *rate;
     let compared = time(window.start + ENDS) - half..time(window.end - ENDS) - half;

@@ -68,7 +68,7 @@ struct Expected {
 
 impl Expected {
     fn by(refit: &Refit, model: &dyn Model, evidence: &Evidence, counted: &[usize]) -> Result<Self, PredictError> {
-        let mut nuisance = Nuisance::of(evidence).with_initial_states(model.about(), evidence);
+        let mut nuisance = Nuisance::of(evidence).with_initial_states(model, refit.values.as_slice(), evidence);
         nuisance.without_offset.clone_from(&refit.nuisance.without_offset);
         nuisance.accuracy = refit.nuisance.accuracy;
         let mut posterior = Posterior::new(model, refit.values.clone(), &refit.free, evidence, nuisance);

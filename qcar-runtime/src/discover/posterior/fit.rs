@@ -32,7 +32,7 @@ pub fn refit_with(
     nuisance: Nuisance,
     evaluations: usize,
 ) -> Result<Refit, PredictError> {
-    let nuisance = nuisance.with_initial_states(model.about(), evidence);
+    let nuisance = nuisance.with_initial_states(model, values.as_slice(), evidence);
     let nuisance = offset::remove_confounded(nuisance, model, values, free, evidence)?;
     let mut start: Vec<f64> = free.iter().map(|free| values.as_slice()[free.parameter]).collect();
     let mut posterior = Posterior::new(model, values.clone(), free, evidence, nuisance);
@@ -71,7 +71,7 @@ pub fn fit(
     decrement: f64,
 ) -> Result<Refit, PredictError> {
     let (errors, factors) = start.errors.split_at(start.errors.len().min(nuisance.of_sensors()));
-    let nuisance = nuisance.with_initial_states(model.about(), evidence);
+    let nuisance = nuisance.with_initial_states(model, start.centre.as_slice(), evidence);
     let nuisance = offset::remove_confounded(nuisance, model, start.values, free, evidence)?;
     let mut place: Vec<f64> = free
         .iter()

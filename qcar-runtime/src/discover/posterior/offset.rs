@@ -40,12 +40,13 @@ pub fn remove_confounded(
 }
 
 /// Name of the parameter, or of the initial state, that shifts a prediction by a constant; `None` if there is none. An
-/// initial state does so if no force acts against it.
+/// initial state does so if no force acts against it. The zero of a run is no state of the model.
 fn owner(model: &dyn Model, free: &[Free], prediction: &Prediction) -> Option<String> {
     let real = |slope: &[nalgebra::Complex<f64>]| DVector::from_iterator(slope.len(), slope.iter().map(|s| s.re));
     let constant = DVector::from_element(prediction.value.len(), 1.0);
     let mut of_states: Vec<DVector<f64>> = Vec::new();
-    for (state, slope) in &prediction.by_initial_states {
+    let is_state = |name: &str| model.about().states.iter().any(|state| state.name == name);
+    for (state, slope) in prediction.by_initial_states.iter().filter(|(name, _)| is_state(name)) {
         let column = real(slope);
         if is_multiple(&column, &constant) {
             return Some(state.clone());

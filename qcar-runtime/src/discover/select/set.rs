@@ -279,13 +279,23 @@ pub fn is_missing(set: &Set, evidence: &Evidence) -> bool {
     is_large && excess(&set.explanation, evidence) > 0.0
 }
 
-/// True if the fitted residuals are significantly larger than noise. For a right model their mean square is 1 with a
-/// standard deviation of `sqrt(2/n)` for `n` values.
+/// True if the fitted residuals are significantly larger than noise.
 pub fn leaves_more_than_noise(set: &Set, evidence: &Evidence) -> bool {
-    let values: usize = evidence.of_role(Role::Fit).map(|(_, series)| series.residuals()).sum();
+    is_more_than_noise(set.explanation.misfit.fit, Role::Fit, evidence)
+}
+
+/// True if the held-out residuals are significantly larger than noise; false if no run is held out.
+pub fn predicts_worse_than_noise(set: &Set, evidence: &Evidence) -> bool {
+    let is_any = evidence.of_role(Role::HeldOut).next().is_some();
+    is_any && is_more_than_noise(set.explanation.misfit.held_out, Role::HeldOut, evidence)
+}
+
+/// True if the RMS of the normalised residuals of one role is significantly larger than 1. For a right model the mean
+/// square of `n` values has a standard deviation of `sqrt(2/n)`.
+fn is_more_than_noise(rms: f64, role: Role, evidence: &Evidence) -> bool {
+    let values: usize = evidence.of_role(role).map(|(_, series)| series.residuals()).sum();
     let scatter = (2.0 / values.max(1) as f64).sqrt();
-    let square = set.explanation.misfit.fit.powi(2);
-    square.is_nan() || square > 1.0 + ONE_SIDED * scatter
+    rms.is_nan() || rms.powi(2) > 1.0 + ONE_SIDED * scatter
 }
 
 /// Share of the [`excess`] residual of `before` that `after` explains with the same sensor errors. It is negative, and

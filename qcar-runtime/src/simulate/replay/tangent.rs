@@ -122,21 +122,39 @@ impl<'a> Tangent<'a> {
         self.directions.len()
     }
 
-    /// Sets a state to a measured value, on which nothing depends.
-    pub fn set(&mut self, state: usize, value: f64) {
+    /// Sets a state to a measured value, which depends on nothing. The states `with` it move along by these factors.
+    pub fn set(&mut self, state: usize, value: f64, with: &[(usize, f64)]) {
         let states = self.x.len();
+        let by = value - self.x[state];
         self.x[state] = value;
+        with.iter().for_each(|&(other, factor)| self.x[other] += factor * by);
         for rows in self.slopes.chunks_exact_mut(states) {
-            rows[state] = [0.0; LANES];
+            let own = std::mem::replace(&mut rows[state], [0.0; LANES]);
+            for &(other, factor) in with {
+                rows[other]
+                    .iter_mut()
+                    .zip(own)
+                    .for_each(|(slope, own)| *slope -= factor * own);
+            }
         }
     }
 
-    /// Begins a motion with these deviations of its states. Its derivatives by initial states begin at one.
-    pub fn begin(&mut self, deviations: &[(usize, f64)]) {
-        deviations.iter().for_each(|&(state, by)| self.x[state] += by);
+    /// Adds a deviation to a state, and to those that move along.
+    pub fn deviate(&mut self, state: usize, by: f64, with: &[(usize, f64)]) {
+        self.x[state] += by;
+        with.iter().for_each(|&(other, factor)| self.x[other] += factor * by);
+    }
+
+    /// Begins the derivatives by those initial states for which `with` gives what moves along.
+    pub fn begin<'w>(&mut self, with: impl Fn(usize) -> Option<&'w [(usize, f64)]>) {
         for (lane, direction) in self.directions.iter().enumerate() {
-            if let Direction::Initial(state) = *direction {
-                self.slopes[lane / LANES * self.x.len() + state][lane % LANES] += 1.0;
+            if let Direction::Initial(state) = *direction
+                && let Some(with) = with(state)
+            {
+                let first = lane / LANES * self.x.len();
+                for (other, factor) in std::iter::once((state, 1.0)).chain(with.iter().copied()) {
+                    self.slopes[first + other][lane % LANES] += factor;
+                }
             }
         }
     }

@@ -25,6 +25,9 @@ const MOST_VALUES: usize = 2000;
 const FLOOR: f64 = 0.005;
 /// Values in half a mean period of a record: they resolve its first eight harmonics, and more add little information.
 const IN_HALF_A_PERIOD: f64 = 8.0;
+/// Fewest values from one restart of a record to the next. A choice: the position and the velocity that are estimated there
+/// make the residual smaller by 6 %.
+const IN_A_WINDOW: usize = 16;
 
 impl Evidence {
     pub(in crate::discover::observe) fn add_history(
@@ -49,9 +52,6 @@ impl Evidence {
         let driven: Vec<&[f64]> = inputs.iter().map(|(_, samples)| samples.as_slice()).collect();
         let noises = responses.iter().map(|(_, samples)| noise(samples, &driven, periodic));
         let noises: Vec<f64> = noises.collect();
-        let series = responses.iter().zip(&noises);
-        self.series
-            .extend(series.map(|((sensor, samples), noise)| part.series(place, sensor, samples, *noise)));
         // A periodic motion ends as it begins.
         let (spread, restarts) = if periodic {
             (Spread::default(), Vec::new())
@@ -59,6 +59,10 @@ impl Evidence {
             let spread = Spread::of(&responses, &noises, &inputs, rate);
             (spread, restarts(about, run.role, &responses, rate))
         };
+        let fewest = IN_A_WINDOW * restarts.len();
+        let series = responses.iter().zip(&noises);
+        self.series
+            .extend(series.map(|((sensor, samples), noise)| part.series(place, sensor, (samples, *noise), fewest)));
         let first = inputs.first().unwrap_or(&responses[0]);
         self.runs.push(Run {
             name: run.name.clone(),
@@ -153,8 +157,8 @@ impl Part {
         })
     }
 
-    /// Series of a sensor with this noise.
-    fn series(&self, run: usize, sensor: &Point, samples: &[f64], noise: f64) -> Series {
+    /// Series of a sensor with these samples and their noise. It has at least `fewest` values if the record does.
+    fn series(&self, run: usize, sensor: &Point, (samples, noise): (&[f64], f64), fewest: usize) -> Series {
         let filtered = self.band.as_ref().map(|band| band.of(samples, self.periodic));
         let samples = filtered.as_deref().unwrap_or(samples);
         let noise = self.band.as_ref().map_or(1.0, Band::of_noise) * noise;
@@ -170,7 +174,8 @@ impl Part {
             value: self.inside.clone().map(|k| Complex::from(samples[k])).collect(),
         };
         let step = (series.at[series.at.len() - 1] - series.at[0]) / series.at.len() as f64;
-        series.thin(((series.half_a_period() / (IN_HALF_A_PERIOD * step)) as usize).max(1));
+        let usual = (series.half_a_period() / (IN_HALF_A_PERIOD * step)) as usize;
+        series.thin(usual.min(series.at.len() / fewest.max(1)).max(1));
         series
     }
 }

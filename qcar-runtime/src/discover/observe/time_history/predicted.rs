@@ -5,13 +5,13 @@ use std::borrow::Cow;
 use nalgebra::Complex;
 
 use crate::discover::observe::{
-    Delay, Evidence, Free, PredictError, Prediction, Recordings, Series, Spread, Stimulus, TestConditions,
-    excitation_of, measures, order_of, signal_of,
+    Delay, Evidence, Free, Initial, PredictError, Prediction, Recordings, Series, Stimulus, TestConditions,
+    excitation_of, measures, order_of, signal_of, zero_of,
 };
 use crate::model::{About, Model};
 use crate::response::parameters::Values;
 use crate::response::signal::SignalError;
-use crate::simulate::replay::{Direction, reading};
+use crate::simulate::replay::{Deviation, Direction, reading};
 use crate::simulate::{Between, Reading, Recorded, Replay};
 use crate::transmissibility::Point;
 
@@ -39,15 +39,23 @@ pub fn history(
     let replay = prepare(model, evidence, run, &sensors, &samples)?;
     let deviations = deviations(about, conditions.initial_states_of(run));
     let base = replay.run(p, &deviations);
-    let states = if by_states { unknown(about, spread) } else { Vec::new() };
+    let unknown = if by_states {
+        spread.unknown(model, p)
+    } else {
+        Vec::new()
+    };
+    let states: Vec<usize> = unknown.iter().filter_map(|(name, _)| place_of(about, name)).collect();
     let directions = directions(model, values, free, inputs, &states);
     let mut along = replay.along(&base, (p, &deviations), &directions).into_iter();
     let names = states.iter().map(|&state| about.states[state].name.to_string());
+    let by_zeros = unknown
+        .iter()
+        .filter_map(|(name, _)| by_zero(name, &sensors, inputs.samples));
     let replays = Replays {
         by_parameter: along.by_ref().take(free.len()).collect(),
-        by_initial_states: names.zip(along.by_ref()).collect(),
+        by_initial_states: names.zip(along.by_ref()).chain(by_zeros).collect(),
         by_drive: along.collect(),
-        base: base.signals,
+        base: with_zeros(base.signals, &sensors, conditions.initial_states_of(run)),
     };
     let predict = |(column, (&place, series)): (usize, (&usize, &&Series))| {
         let delay = conditions.delays.get(place).copied().unwrap_or(0.0);
@@ -153,6 +161,7 @@ pub fn replayed(
     let replay = prepare(model, evidence, run, &sensors, &samples)?;
     let deviations = deviations(model.about(), conditions.initial_states_of(run));
     let signals = replay.run(values.as_slice(), &deviations).signals;
+    let signals = with_zeros(signals, &sensors, conditions.initial_states_of(run));
     let stimulus = &evidence.runs[run].stimulus;
     let shown = signals.iter().map(|signal| stimulus.of_band(signal));
     Ok(sensors.into_iter().cloned().zip(shown).collect())
@@ -238,18 +247,42 @@ fn prepare<'a>(
     Ok(Replay::new(model, recorded, how, restarts.collect(), readings))
 }
 
-/// States with the deviation of their initial value from the sensor reading or from rest.
-fn deviations(about: &About, initial_states: &[(String, f64)]) -> Vec<(usize, f64)> {
-    let place = |name: &str| about.states.iter().position(|state| state.name == name);
-    let deviations = initial_states.iter().filter_map(|(name, by)| Some((place(name)?, *by)));
-    deviations.collect()
+/// The initial states of a record with their positions in the model.
+fn deviations(about: &About, initial_states: &[Initial]) -> Vec<Deviation> {
+    let of = |own: &Initial| {
+        Some(Deviation {
+            sample: own.sample,
+            state: place_of(about, &own.state)?,
+            by: own.by,
+        })
+    };
+    initial_states.iter().filter_map(of).collect()
 }
 
-/// States with an uncertain initial value.
-fn unknown(about: &About, spread: &Spread) -> Vec<usize> {
-    let states = about.states.iter().enumerate();
-    let uncertain = states.filter(|(_, state)| spread.sigma(state).is_some());
-    uncertain.map(|(place, _)| place).collect()
+/// The position of a state; `None` for the zero of a sensor.
+fn place_of(about: &About, name: &str) -> Option<usize> {
+    about.states.iter().position(|state| state.name == name)
+}
+
+/// The signals with the zeros of their sensors.
+fn with_zeros(mut signals: Signals, sensors: &[&Point], initial_states: &[Initial]) -> Signals {
+    for (signal, sensor) in signals.iter_mut().zip(sensors) {
+        let name = zero_of(sensor);
+        let zero: f64 = initial_states
+            .iter()
+            .filter(|own| own.state == name)
+            .map(|own| own.by)
+            .sum();
+        signal.iter_mut().for_each(|value| *value += zero);
+    }
+    signals
+}
+
+/// Derivatives of the signals by the zero of a sensor of this name, with the name; `None` for a state.
+fn by_zero(name: &str, sensors: &[&Point], samples: usize) -> Option<(String, Signals)> {
+    let own = sensors.iter().position(|sensor| zero_of(sensor) == name)?;
+    let column = |place: usize| vec![if place == own { 1.0 } else { 0.0 }; samples];
+    Some((name.to_owned(), (0..sensors.len()).map(column).collect()))
 }
 
 /// States that a sensor measures, with their values.

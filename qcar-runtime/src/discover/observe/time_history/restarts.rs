@@ -2,20 +2,24 @@
 //!
 //! The position of a mass that no link holds depends on all earlier forces, so the smallest force error becomes a
 //! drift. A fit uses this drift, since nothing determines the parameters better. In a held-out run the drift would hide
-//! all other errors. There such a mass is reset to its measured position at the beginning of each of [`WINDOWS`]
-//! windows, and the model runs freely within a window (multiple shooting: Bock, H. G., Plitt, K. J., IFAC world
-//! congress, 1984).
+//! all other errors. There such a mass is reset to its measured position and velocity, with an estimated error, at the
+//! beginning of each of [`WINDOWS`] windows, and the model runs freely within a window (multiple shooting: Bock, H. G.,
+//! Plitt, K. J., IFAC world congress, 1984).
 
 use std::f64::consts::TAU;
 
 use crate::campaign::{Quantity, Role};
 use crate::discover::observe::{Restart, Spread, measures};
+use crate::mean::deviation;
 use crate::model::{About, Matrix, StateKind};
 use crate::spectrum::{Trend, transform};
 use crate::transmissibility::Point;
 
 /// Offset of a sensor that measures an initial state, relative to the RMS of its readings.
 const OFFSET: f64 = 0.1;
+/// Change of the zero of a sensor from run to run, relative to the deviation of its readings. A choice: one percent, as
+/// of a gain.
+const ZERO: f64 = 0.01;
 /// Factor on the size of a motion in its record, for the prior standard deviation of an initial state: it is nearly
 /// uninformative.
 const WIDE: f64 = 3.0;
@@ -30,14 +34,14 @@ impl Spread {
             let power = y.iter().map(|y| y * y).sum::<f64>() / y.len() as f64;
             (point.clone(), noise.hypot(OFFSET * power.sqrt()))
         });
-        let mut unmeasured = [0.0_f64; 3];
+        let mut unmeasured = [0.0_f64; 4];
         for (point, y) in recorded.iter().chain(inputs) {
             let (far, omega) = (excursion(y), TAU * middle(y, rate));
             let of_signal = match point.quantity {
-                Quantity::Displacement => [far, far * omega, 0.0],
-                Quantity::Velocity => [far / omega, far, 0.0],
-                Quantity::Acceleration => [far / (omega * omega), far / omega, 0.0],
-                Quantity::Force => [0.0, 0.0, far],
+                Quantity::Displacement => [far, far * omega, far * omega * omega, 0.0],
+                Quantity::Velocity => [far / omega, far, far * omega, 0.0],
+                Quantity::Acceleration => [far / (omega * omega), far / omega, far, 0.0],
+                Quantity::Force => [0.0, 0.0, 0.0, far],
             };
             for (unmeasured, own) in unmeasured.iter_mut().zip(of_signal) {
                 *unmeasured = unmeasured.max(WIDE * own);
@@ -46,6 +50,10 @@ impl Spread {
         Self {
             measured: measured.collect(),
             unmeasured,
+            zeros: recorded
+                .iter()
+                .map(|(point, y)| (point.clone(), ZERO * deviation(y)))
+                .collect(),
         }
     }
 }
