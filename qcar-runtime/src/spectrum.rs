@@ -103,14 +103,14 @@ pub fn transforms(records: &[Vec<f64>]) -> Vec<Vec<Complex<f64>>> {
 ///
 /// It takes place in `room`, since fresh memory of this size takes a third as long as the transform.
 fn together([first, second]: [&[f64]; 2], [lines, scratch]: &mut [Vec<Complex<f64>>; 2]) -> [Vec<Complex<f64>>; 2] {
-    // Rounding errors are relative to the larger record, so both get the same size; a power of two rounds nothing.
-    let size = |record: &[f64]| record.iter().fold(0.0, |most: f64, sample| most.max(sample.abs()));
+    let size = |record: &[f64]| record.iter().map(|sample| sample.abs()).sum::<f64>();
     let ratio = size(first) / size(second);
-    let scale = if ratio.is_normal() {
-        ratio.log2().round().exp2()
-    } else {
-        1.0
-    };
+    if !ratio.is_normal() {
+        // The lines of a record of zeros are exactly zero, and what is not a number stays in its record.
+        return [first, second].map(transform);
+    }
+    // Rounding errors are relative to the larger record, so both get the same size; a power of two rounds nothing.
+    let scale = ratio.log2().round().exp2();
     let pair = |(first, second): (&f64, &f64)| Complex::new(*first, second * scale);
     lines.clear();
     lines.extend(first.iter().zip(second).map(pair));

@@ -137,9 +137,9 @@ mod tests {
         }
     }
 
-    /// A column that depends on the first two but for a part of `apart` shares their coefficient if that is rounding.
+    /// The conditions of Penrose. The last column depends on the first two but for a part of the size `apart`.
     #[test]
-    fn the_weights_are_the_pseudo_inverse_of_nalgebra() {
+    fn the_weights_are_the_rows_of_the_pseudo_inverse() {
         let entry = |row: usize, column: usize| {
             Complex::new((1.0 + (row * 7 + column * 3) as f64).sin(), (row * column) as f64)
         };
@@ -148,20 +148,25 @@ mod tests {
                 0 | 1 => entry(row, column),
                 _ => entry(row, 0) - entry(row, 1) * 2.0 + entry(row, 5) * apart,
             });
-            let columns = matrix.column_iter().map(|column| column.into_owned());
-            let weights = Regressors::new(columns).weights();
-            let lengths = DVector::from_iterator(3, matrix.column_iter().map(|column| column.norm()));
-            let mut unit = matrix.clone();
-            unit.column_iter_mut()
-                .zip(&lengths)
-                .for_each(|(mut column, length)| column.unscale_mut(*length));
-            let expected = unit.pseudo_inverse(1e-10).unwrap();
-            for (unknown, weights) in weights.iter().enumerate() {
-                let expected = expected.row(unknown).adjoint().unscale(lengths[unknown]);
-                // Rounding, times the condition of the columns.
-                let allowed = 1e-14 / apart.max(1e-10).min(1.0);
-                let apart = (weights - &expected).norm() / expected.norm();
-                assert!(apart < allowed, "{unknown}: {apart}");
+            let columns: Vec<_> = matrix.column_iter().map(|column| column.into_owned()).collect();
+            // Of columns of unit length.
+            let unit = DMatrix::from_columns(&columns.iter().map(DVector::normalize).collect::<Vec<_>>());
+            let weights = Regressors::new(columns.clone()).weights().into_iter().zip(&columns);
+            let rows: Vec<_> = weights
+                .map(|(own, column)| own.adjoint().scale(column.norm()))
+                .collect();
+            let inverse = DMatrix::from_rows(&rows);
+            let (across, along) = (&unit * &inverse, &inverse * &unit);
+            // Each entry rounds, and the condition magnifies that.
+            let allowed = unit.len() as f64 * f64::EPSILON * unit.norm() * inverse.norm();
+            for (name, left, right) in [
+                ("A W A", &across * &unit, unit.clone()),
+                ("W A W", &along * &inverse, inverse.clone()),
+                ("A W", across.adjoint(), across.clone()),
+                ("W A", along.adjoint(), along.clone()),
+            ] {
+                let error = (left - &right).norm() / right.norm();
+                assert!(error < allowed, "{name}, {apart}: {error}, more than {allowed}");
             }
         }
     }
