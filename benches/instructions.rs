@@ -1,6 +1,6 @@
 //! Instructions of compiled models, counted by valgrind: the same on a busy machine.
 
-#![allow(
+#![expect(
     missing_docs,
     reason = "the macros of gungraun make public items without documentation"
 )]
@@ -47,7 +47,7 @@ library_benchmark_group!(
 );
 
 /// The counted functions.
-#[allow(
+#[expect(
     clippy::disallowed_methods,
     reason = "the macro of gungraun ends the process of a bench"
 )]

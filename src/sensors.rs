@@ -1,11 +1,11 @@
 //! Sensors of a campaign that do not measure what a model has.
 
-use qcar_runtime::campaign::{Campaign, Channel, dimension};
+use qcar_runtime::campaign::{Campaign, Channel, Side, dimension};
 use qcar_runtime::discover::observe::{is_known, nearest_place, signal_of};
 use qcar_runtime::error::{Place, Problem};
 use qcar_runtime::model::{About, Output};
 use qcar_runtime::response::signal::output_of;
-use qcar_runtime::transmissibility::{End, Point};
+use qcar_runtime::transmissibility::Point;
 
 /// The sensors at places that the model lacks, as sentences.
 pub fn unknown(about: &About, campaign: &Campaign) -> Vec<String> {
@@ -62,9 +62,7 @@ fn in_other_unit<'a>(about: &'a About, own: &Channel) -> Option<&'a Output> {
 
 /// The sensor as the mean of its place, and at each end of it.
 fn points(own: &Channel) -> impl Iterator<Item = Point> {
-    let ends = [None, Some(End::Front), Some(End::Rear)].into_iter();
-    ends.map(|end| Point {
-        end,
-        ..Point::new(&own.location, own.axis, own.quantity)
-    })
+    let mean = Point::new(&own.location, own.axis, own.quantity);
+    let ends = [Side::Front, Side::Rear].map(|end| mean.on(end));
+    std::iter::once(mean).chain(ends)
 }

@@ -1,5 +1,5 @@
 //! Executable memory and calls of its code. All unsafe code of the crate is here.
-#![allow(
+#![expect(
     unsafe_code,
     reason = "the processor runs code that was written into memory, which Rust cannot check"
 )]

@@ -12,10 +12,12 @@ use nalgebra::Complex;
 
 use crate::campaign::{Axis, Channel, History, Quantity, Recording, Side, Test};
 use crate::error::{InputError, Place, Problem};
-use crate::spectrum::{Segments, Trend, Window};
+use crate::spectrum::{self, Segments, Trend, Window};
 
 // An estimate at one frequency.
 mod line;
+// Least squares over the lines of a spectrum.
+mod regressors;
 // Estimates from the whole record by local rational functions.
 mod local;
 // Estimates of each harmonic of a sweep.
@@ -28,7 +30,7 @@ mod band;
 pub use band::logarithmic;
 pub use line::Line;
 
-/// A measured location: the sensors of all sides together, or those at one end alone.
+/// A measured location: the sensors of all sides together, or those of one side alone.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Point {
     /// Location: `pad`, or a mass, link or input of the model.
@@ -37,74 +39,55 @@ pub struct Point {
     pub axis: Axis,
     /// Quantity.
     pub quantity: Quantity,
-    /// End of the location; `None` for the mean of all sensors there.
-    pub end: Option<End>,
-}
-
-/// An end of a part, such as a sub-frame; it pitches if both ends move differently.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[expect(missing_docs, reason = "each says it")]
-pub enum End {
-    Front,
-    Rear,
-}
-
-impl End {
-    /// The end at which a sensor is.
-    fn of(side: Side) -> Option<End> {
-        match side {
-            Side::Front => Some(End::Front),
-            Side::Rear => Some(End::Rear),
-            Side::Left | Side::Right | Side::Centre => None,
-        }
-    }
-
-    /// Name in campaigns.
-    pub const fn name(self) -> &'static str {
-        match self {
-            End::Front => "front",
-            End::Rear => "rear",
-        }
-    }
+    /// Side of the location whose sensors these are; `None` for the mean of all sensors there.
+    pub side: Option<Side>,
 }
 
 impl Point {
     /// The mean of all sensors of a place.
     pub fn new(location: &str, axis: Axis, quantity: Quantity) -> Self {
-        let (location, end) = (location.to_owned(), None);
+        let (location, side) = (location.to_owned(), None);
         Point {
             location,
             axis,
             quantity,
-            end,
+            side,
         }
     }
 
-    /// The location, and its end.
+    /// The same location with the sensors of one side alone.
+    pub fn on(&self, side: Side) -> Self {
+        let side = Some(side);
+        Point { side, ..self.clone() }
+    }
+
+    /// The location, and its side.
     pub fn place(&self) -> String {
-        let end = self.end.map_or(String::new(), |end| format!(" {}", end.name()));
-        format!("{}{end}", self.location)
+        let side = self.side.map_or(String::new(), |side| format!(" {}", side.name()));
+        format!("{}{side}", self.location)
     }
 
     /// True if a sensor belongs to the point.
     pub fn has(&self, sensor: &Channel) -> bool {
-        let stands_there = self.end.is_none_or(|end| End::of(sensor.side) == Some(end));
+        let stands_there = self.side.is_none_or(|side| sensor.side == side);
         let is_place = sensor.location == self.location && sensor.axis == self.axis;
         is_place && sensor.quantity == self.quantity && stands_there
     }
 
-    /// The two ends as separate points if a run has sensors at both, otherwise the point itself.
+    /// The two ends as separate points if a run has sensors at both, otherwise the point itself; a part such as a
+    /// sub-frame pitches if they move differently.
     pub fn ends(self, history: &History) -> Vec<Point> {
-        let ends = [End::Front, End::Rear].map(|end| Point {
-            end: Some(end),
-            ..self.clone()
-        });
-        let is_measured = |end: &Point| history.signals.iter().any(|(sensor, _)| end.has(sensor));
-        if ends.iter().all(is_measured) {
+        let ends = [Side::Front, Side::Rear].map(|end| self.on(end));
+        if ends.iter().all(|end| end.is_measured(history)) {
             ends.into()
         } else {
             vec![self]
         }
+    }
+
+    /// True if a run has a sensor of the point.
+    pub fn is_measured(&self, history: &History) -> bool {
+        history.signals.iter().any(|(sensor, _)| self.has(sensor))
     }
 }
 
@@ -264,7 +247,7 @@ impl Related {
     }
 
     /// Response of a point to the reference, line by line; `None` for an unknown point.
-    pub fn response(&self, point: &Point) -> Option<impl Iterator<Item = Complex<f64>>> {
+    pub fn response<'a>(&'a self, point: &Point) -> Option<impl Iterator<Item = Complex<f64>> + use<'a>> {
         let place = self.place(point)?;
         Some(self.lines.iter().map(move |line| line.value[place]))
     }
@@ -292,11 +275,16 @@ pub fn responses(history: &History, points: &[Point], options: &Options) -> Resu
         .iter()
         .map(|point| signal(history, point))
         .collect::<Result<Vec<_>, _>>()?;
-    let frequencies = band::frequencies(history, &points[0], &signals[0], options)?;
+    let whole = match options.estimator {
+        Estimator::Local { .. } => &signals[..],
+        Estimator::Welch(_) => &signals[..1],
+    };
+    let spectra = spectrum::transforms(whole);
+    let frequencies = band::frequencies(history, &points[0], &spectra[0], options)?;
     check_alive(history, points)?;
-    let rate = history.sample_rate;
+    let (rate, spacing) = (history.sample_rate, history.sample_rate / history.len() as f64);
     let mut lines = match options.estimator {
-        Estimator::Local { lines, width } => local::lines(&signals, rate, &frequencies, lines, width),
+        Estimator::Local { lines, width } => local::lines(&spectra, spacing, &frequencies, lines, width),
         Estimator::Welch(segments) => averaged::lines(&signals, rate, &frequencies, &segments),
     };
     if let Test::TimeHistory(Recording {

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use qcar_runtime::spectrum::{Segments, Trend, Window, transform, welch};
+use qcar_runtime::spectrum::{Segments, Trend, Window, transform, transforms, welch};
 
 fn sine(n: usize, cycles: f64) -> Vec<f64> {
     (0..n).map(|k| (TAU * cycles * k as f64 / n as f64).sin()).collect()
@@ -85,4 +85,24 @@ fn trends_are_taken_off() {
     let mut kept = line.clone();
     Trend::Kept.remove(&mut kept);
     assert_eq!(kept, line);
+}
+
+#[test]
+fn records_that_are_transformed_together_have_the_lines_that_they_have_alone() {
+    for n in [96, 97, 1001] {
+        let noise = white(n);
+        // Of different sizes, and one that is zero.
+        let records =
+            [1.0, 1e-9, 0.0, 1e6, -3.0].map(|scale| noise.iter().map(|x| scale * (x + x * x)).collect::<Vec<_>>());
+        let together = transforms(&records);
+        assert_eq!(together.len(), records.len());
+        for (lines, record) in together.iter().zip(&records) {
+            let alone = transform(record);
+            let largest = alone.iter().map(|line| line.norm()).fold(0.0, f64::max);
+            assert_eq!(lines.len(), alone.len());
+            for (own, expected) in lines.iter().zip(alone) {
+                assert!((own - expected).norm() <= 1e-14 * largest, "{n}: {own} {expected}");
+            }
+        }
+    }
 }

@@ -34,13 +34,19 @@ pub(crate) mod places;
 // A learned law as an effect file.
 pub(crate) mod law;
 // The verdict in words.
+pub(crate) mod verdict;
+// A finding in words.
 mod finding;
+// Fitted parameters, and zero offsets of sensors.
+mod fitted;
 // Fitted nuisance parameters as text and JSON.
 mod nuisances;
 // A learned law as text and JSON.
 mod learned;
-// The answer as text and JSON.
-pub(crate) mod render;
+// The answer as JSON.
+pub(crate) mod result;
+// The answer as text.
+mod text;
 // The residuals as a figure.
 mod figure;
 // Results of a search that was stopped.
@@ -98,12 +104,12 @@ pub struct Answer {
 impl Answer {
     /// The answer as `docs/json.md` describes it.
     pub fn json(&self) -> String {
-        render::json(self)
+        result::json(self)
     }
 
     /// The answer in words.
     pub fn text(&self) -> String {
-        render::text(self)
+        text::text(self)
     }
 
     /// Residuals of each sensor over frequency, before and after, as SVG.
@@ -198,8 +204,8 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         write(&mut answer, folder)?;
     }
     Ok(match arguments.format {
-        Format::Text => prose(&render::text(&answer)),
-        Format::Json => render::json(&answer),
+        Format::Text => prose(&text::text(&answer)),
+        Format::Json => result::json(&answer),
     })
 }
 
@@ -371,7 +377,7 @@ pub(crate) fn write(answer: &mut Answer, folder: &Path) -> Result<(), Failure> {
     if let Some(learned) = &mut answer.learned {
         learned.place(folder);
     }
-    put(folder, "discovery.json", &render::json(answer))?;
+    put(folder, "discovery.json", &result::json(answer))?;
     if let Some(model) = &answer.model {
         model.write(folder)?;
     }
@@ -385,7 +391,7 @@ pub(crate) fn write(answer: &mut Answer, folder: &Path) -> Result<(), Failure> {
     put(
         folder,
         "parameters.toml",
-        &render::parameters(&heading, &discovery.after),
+        &fitted::parameters(&heading, &discovery.after),
     )?;
     put(folder, "gap.svg", &answer.figure())?;
     unfinished::remove(folder);

@@ -377,12 +377,23 @@ impl Test {
 
 impl Side {
     pub(super) const NAMES: &[(&str, Side)] = &[
-        ("left", Side::Left),
-        ("right", Side::Right),
-        ("centre", Side::Centre),
-        ("front", Side::Front),
-        ("rear", Side::Rear),
+        (Side::Left.name(), Side::Left),
+        (Side::Right.name(), Side::Right),
+        (Side::Centre.name(), Side::Centre),
+        (Side::Front.name(), Side::Front),
+        (Side::Rear.name(), Side::Rear),
     ];
+
+    /// Name in campaigns.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Side::Left => "left",
+            Side::Right => "right",
+            Side::Centre => "centre",
+            Side::Front => "front",
+            Side::Rear => "rear",
+        }
+    }
 }
 
 impl Axis {

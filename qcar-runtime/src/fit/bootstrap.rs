@@ -123,7 +123,7 @@ impl Drawn {
         let information = uncertainty::information(minimum);
         let grids = 0..setup.grids.len();
         let grids: Vec<Vec<Line>> = grids
-            .map(|grid| uncertainty::unfitted(setup, minimum, &information, grid))
+            .map(|grid| uncertainty::unfitted((&setup.grids, &setup.targets), minimum, &information, grid))
             .collect();
         let correlated = uncertainty::are_neighbours_correlated(setup, minimum, &information);
         let lags = |lines: &Vec<Line>| if correlated { uncertainty::lags(lines.len()) } else { 0 };

@@ -94,14 +94,15 @@ fn level(
         .iter()
         .map(|(channel, _)| (place(&channel.denominator), place(&channel.numerator)))
         .collect();
-    let related = Related::new(
-        &history,
-        &reference,
-        pairs.iter().flat_map(|(from, to)| [from, to]),
-        options,
-    )?;
+    let ends: Vec<&Point> = pairs.iter().flat_map(|(from, to)| [from, to]).collect();
+    let doubled = PAIRS.map(|(_, sides)| doubled(&history, &reference, &ends, sides));
+    let of_sides = PAIRS.iter().zip(&doubled);
+    let of_sides: Vec<Point> = of_sides
+        .flat_map(|((_, sides), points)| points.iter().flat_map(|point| sides.map(|side| point.on(side))))
+        .collect();
+    let related = Related::new(&history, &reference, ends.into_iter().chain(&of_sides), options)?;
     let ratios = pairs.iter().map(|pair| related.ratio(&history, pair));
-    let differences = differences(&history, &reference, &pairs, (&related, options))?;
+    let differences: Vec<Vec<Difference>> = pairs.iter().map(|pair| differences(&related, &doubled, pair)).collect();
     sides_agree(&history, &reference, &pairs, &differences)?;
     let observations = all.iter().zip(ratios).zip(differences);
     let observations = observations
@@ -268,45 +269,38 @@ fn observation(
     }
 }
 
-/// Differences between the symmetric sensors of each pair of points.
-fn differences(
-    history: &History,
-    reference: &Point,
-    pairs: &[(Point, Point)],
-    (both, options): (&Related, &Options),
-) -> Result<Vec<Vec<Difference>>, InputError> {
-    let mut all = vec![Vec::new(); pairs.len()];
-    for (pair, sides) in [
-        (Pair::LeftRight, [Side::Left, Side::Right]),
-        (Pair::FrontRear, [Side::Front, Side::Rear]),
-    ] {
-        let doubled = doubled(history, reference, sides);
-        if doubled.is_empty() {
-            continue;
-        }
-        let one = |dropped: Side| {
-            let wanted = doubled
-                .iter()
-                .filter(|point| pairs.iter().any(|(from, to)| [from, to].contains(point)));
-            Related::new(&without(history, &doubled, dropped), reference, wanted, options)
-        };
-        let (first, second) = (one(sides[1])?, one(sides[0])?);
-        for (all, ends) in all.iter_mut().zip(pairs) {
-            let [a, b] = [&first, &second].map(|side| ratio_of_side(side, both, ends));
-            let half = a.zip(b).map(|(a, b)| (a / b).ln() * Complex::from(0.5)).collect();
-            all.push(Difference { pair, half });
-        }
-    }
-    Ok(all)
+/// The sides of an axle that should be alike.
+const PAIRS: [(Pair, [Side; 2]); 2] = [
+    (Pair::LeftRight, [Side::Left, Side::Right]),
+    (Pair::FrontRear, [Side::Front, Side::Rear]),
+];
+
+/// The points with sensors on both sides. The reference stays the mean of its sensors, the virtual centre pad.
+fn doubled<'a>(history: &History, reference: &Point, points: &[&'a Point], sides: [Side; 2]) -> Vec<&'a Point> {
+    let is_doubled = |point: &Point| sides.iter().all(|&side| point.on(side).is_measured(history));
+    let doubled = points.iter().copied();
+    doubled
+        .filter(|&point| point != reference && is_doubled(point))
+        .collect()
 }
 
-/// The ratio of two points from the sensors of one side; a point without a sensor on that side uses those of both.
-fn ratio_of_side(side: &Related, both: &Related, (from, to): &(Point, Point)) -> impl Iterator<Item = Complex<f64>> {
-    let response = |point: &Point| match side.response(point) {
-        Some(own) => own.collect::<Vec<_>>(),
-        None => both.response(point).expect("all were estimated").collect(),
+/// Differences between the symmetric sensors of two points, for each of [`PAIRS`] that a run has `doubled`.
+fn differences(related: &Related, doubled: &[Vec<&Point>], (from, to): &(Point, Point)) -> Vec<Difference> {
+    // A point without a sensor on a side uses those of both.
+    let response = |point: &Point, side: Side| {
+        let own = related.response(&point.on(side));
+        own.or_else(|| related.response(point)).expect("all were estimated")
     };
-    response(to).into_iter().zip(response(from)).map(|(to, from)| to / from)
+    let ratio = |side: Side| response(to, side).zip(response(from, side)).map(|(to, from)| to / from);
+    let measured = PAIRS.iter().zip(doubled).filter(|(_, points)| !points.is_empty());
+    let difference = |(&(pair, [first, second]), _): (&(Pair, [Side; 2]), _)| {
+        let half = ratio(first)
+            .zip(ratio(second))
+            .map(|(a, b)| (a / b).ln() * Complex::from(0.5));
+        let half = half.collect();
+        Difference { pair, half }
+    };
+    measured.map(difference).collect()
 }
 
 /// Checks that the sensors of two sides agree: their mean has no meaning if units or signs differ.
@@ -346,28 +340,4 @@ fn sides_agree(
     };
     let problems = pairs.iter().zip(differences).filter_map(problem).collect();
     InputError::unless_empty(problems, Some(()))
-}
-
-/// Points with sensors on both sides. The reference stays the mean of its sensors, the virtual centre pad.
-fn doubled(history: &History, reference: &Point, sides: [Side; 2]) -> Vec<Point> {
-    let has = |point: &Point, side: Side| history.signals.iter().any(|(s, _)| point.has(s) && s.side == side);
-    points(history)
-        .into_iter()
-        .filter(|p| p != reference && sides.iter().all(|&side| has(p, side)))
-        .collect()
-}
-
-fn without(history: &History, points: &[Point], side: Side) -> History {
-    let dropped = |sensor: &Sensor| sensor.side == side && points.iter().any(|point| point.has(sensor));
-    let signals = history
-        .signals
-        .iter()
-        .filter(|(sensor, _)| !dropped(sensor))
-        .cloned()
-        .collect();
-    History {
-        file: history.file.clone(),
-        signals,
-        ..history.clone()
-    }
 }

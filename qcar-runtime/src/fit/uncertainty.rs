@@ -11,6 +11,7 @@
 //!    parameter gets less than the typical relative shift of all parameters that are well determined otherwise.
 //! 3. *Gains*: the gain of each sensor has a constant error, which may not appear in the residuals.
 
+use super::cost::{GridPlan, Target};
 use super::observation::Pair;
 use super::setup::Setup;
 use crate::least_squares::Outcome;
@@ -108,7 +109,7 @@ impl Uncertainty {
 /// optimum the scores sum to zero, which looks like a negative correlation.
 fn scatter<M: Model + ?Sized>(setup: &Setup<'_, M>, outcome: &Outcome, information: &Information) -> DMatrix<f64> {
     let count = information.seen().len();
-    let [covariance, long_run] = of_lines(setup, outcome, information);
+    let [covariance, long_run] = of_lines((&setup.grids, &setup.targets), outcome, information);
     let growth = |k: usize| {
         if long_run[(k, k)] > covariance[(k, k)] {
             long_run[(k, k)] / covariance[(k, k)]
@@ -120,15 +121,15 @@ fn scatter<M: Model + ?Sized>(setup: &Setup<'_, M>, outcome: &Outcome, informati
 }
 
 /// The covariance with lines as independent clusters, and that with neighbours that may be correlated.
-fn of_lines<M: Model + ?Sized>(
-    setup: &Setup<'_, M>,
+fn of_lines(
+    (grids, targets): (&[GridPlan], &[Target]),
     outcome: &Outcome,
     information: &Information,
 ) -> [DMatrix<f64>; 2] {
     let count = information.seen().len();
     let mut sums = [DMatrix::zeros(count, count), DMatrix::zeros(count, count)];
-    for grid in 0..setup.grids.len() {
-        let lines = unfitted(setup, outcome, information, grid);
+    for grid in 0..grids.len() {
+        let lines = unfitted((grids, targets), outcome, information, grid);
         let scores: Vec<DVector<f64>> = lines
             .iter()
             .map(|line| line.slopes.transpose() * &line.residual)
@@ -148,7 +149,8 @@ pub(super) fn are_neighbours_correlated<M: Model + ?Sized>(
     outcome: &Outcome,
     information: &Information,
 ) -> bool {
-    let [independent, long_run] = of_lines(setup, outcome, information).map(|own| own.diagonal());
+    let [independent, long_run] =
+        of_lines((&setup.grids, &setup.targets), outcome, information).map(|own| own.diagonal());
     let growth = long_run.component_div(&independent);
     growth.iter().any(|growth| growth.is_finite()) && growth.mean() > 1.0
 }
@@ -167,14 +169,16 @@ pub(super) struct Line {
 /// The residuals are those of a fit without the line, `(1 − H)⁻¹ r` with its block H of the projection (CR3, MacKinnon
 /// & White, "Some heteroskedasticity-consistent covariance matrix estimators with improved finite sample properties",
 /// J. Econometrics 29, 1985): the few lines at a resonance determine a parameter, so the fit passes through them.
-pub(super) fn unfitted<M: Model + ?Sized>(
-    setup: &Setup<'_, M>,
+///
+/// It is the same code for all models, so the crate of the fits optimises it, not the one that calls them.
+pub(super) fn unfitted(
+    (grids, targets): (&[GridPlan], &[Target]),
     outcome: &Outcome,
     information: &Information,
     grid: usize,
 ) -> Vec<Line> {
     let of_line = |line: usize| {
-        let of_grid = setup.targets.iter().filter(|target| target.grid == grid);
+        let of_grid = targets.iter().filter(|target| target.grid == grid);
         let rows: Vec<usize> = of_grid
             .flat_map(|target| [target.rows().0.start + line, target.rows().1.start + line])
             .collect();
@@ -185,7 +189,7 @@ pub(super) fn unfitted<M: Model + ?Sized>(
         let residual = free.lu().solve(&residual).unwrap_or(residual);
         Line { rows, residual, slopes }
     };
-    (0..setup.grids[grid].frequency.len()).map(of_line).collect()
+    (0..grids[grid].frequency.len()).map(of_line).collect()
 }
 
 /// Number of neighbours of a line that may be correlated with it.

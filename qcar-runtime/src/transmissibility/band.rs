@@ -2,11 +2,12 @@
 
 use std::f64::consts::TAU;
 
+use nalgebra::Complex;
+
 use super::{Estimator, Options, Point};
 use crate::campaign::{History, Quantity, Spacing, Sweep, Test};
 use crate::error::{InputError, Place, Problem};
 use crate::shown::shown;
-use crate::spectrum::transform;
 
 /// Default number of frequencies.
 const COUNT: usize = 300;
@@ -28,17 +29,17 @@ pub fn logarithmic(first: f64, last: f64, count: usize) -> Vec<f64> {
     frequencies
 }
 
-/// The frequencies of the estimate, after the record has been checked.
+/// The frequencies of the estimate, after the record has been checked; `spectrum` is that of its reference.
 pub(super) fn frequencies(
     history: &History,
     reference: &Point,
-    signal: &[f64],
+    spectrum: &[Complex<f64>],
     options: &Options,
 ) -> Result<Vec<f64>, InputError> {
     if let Test::Sweep(sweep) = &history.test {
         lasts(history, CYCLES / sweep.start_frequency, sweep.start_frequency)?;
     }
-    let bands = bands(signal, history, reference.quantity);
+    let bands = bands(spectrum, history, reference.quantity);
     if bands.iter().all(|band| band.1 <= 0.0) {
         let remedy = "choose another reference, or export the record again";
         let place = Place::Name(reference.to_string());
@@ -62,10 +63,10 @@ pub(super) fn frequencies(
 
 /// Centre (Hz) and mean power of logarithmic bands, normalised so that a sweep has the same power in all of them: the
 /// power of a velocity over the time that the sweep spends there.
-fn bands(signal: &[f64], history: &History, quantity: Quantity) -> Vec<(f64, f64)> {
+fn bands(spectrum: &[Complex<f64>], history: &History, quantity: Quantity) -> Vec<(f64, f64)> {
     const WIDTH: f64 = 1.05;
-    let power: Vec<f64> = transform(signal).iter().map(|line| line.norm_sqr()).collect();
-    let (rate, spacing) = (history.sample_rate, history.sample_rate / signal.len() as f64);
+    let power: Vec<f64> = spectrum.iter().map(|line| line.norm_sqr()).collect();
+    let (rate, spacing) = (history.sample_rate, history.sample_rate / history.len() as f64);
     let lowest = CYCLES * spacing;
     let edges = std::iter::successors(Some(lowest), |f| Some(f * WIDTH)).take_while(|f| f * WIDTH < rate / 2.0);
     let band = |first: f64| {

@@ -7,10 +7,11 @@
 //! frequency responses of a sweep (A. Farina, AES Convention 108, 2000; A. Novák et al., IEEE Trans. Instrum. Meas. 59,
 //! 2010), without the time window of these methods, which smears a lightly damped mode.
 
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DVector};
 use rayon::prelude::*;
 
-use super::local::{neighbourhood, pseudo_inverse};
+use super::local::neighbourhood;
+use super::regressors::Regressors;
 use crate::spectrum::{synthesize, transform};
 
 /// Neighbourhood of a frequency.
@@ -160,25 +161,21 @@ impl Swept {
 
 /// Value and variance of each `b_n0` in `Y (1 + a δ) = Σ_n (b_n0 + b_n1 δ) X_n + t`.
 fn fit(references: &[&[Complex<f64>]], response: &[Complex<f64>], offsets: &[f64]) -> Vec<(Complex<f64>, f64)> {
-    let unknowns = 2 * references.len() + 2;
-    let regressors = DMatrix::from_fn(offsets.len(), unknowns, |k, unknown| {
-        match (unknown < 2 * references.len(), unknown % 2) {
-            (true, 0) => references[unknown / 2][k],
-            (true, _) => references[unknown / 2][k] * offsets[k],
-            (false, 0) => Complex::ONE,
-            (false, _) => -response[k] * offsets[k],
-        }
-    });
     let response = DVector::from_column_slice(response);
-    let inverse = pseudo_inverse(&regressors);
-    let solution = &inverse * &response;
-    let freedom = offsets.len().saturating_sub(unknowns).max(1) as f64;
-    let noise = (&response - &regressors * &solution).norm_squared() / freedom;
+    let sloped = |lines: &DVector<Complex<f64>>| DVector::from_fn(lines.len(), |k, _| lines[k] * offsets[k]);
+    let of_reference = |lines: &&[Complex<f64>]| {
+        let lines = DVector::from_column_slice(lines);
+        let sloped = sloped(&lines);
+        [lines, sloped]
+    };
+    let own = [response.map(|_| Complex::ONE), -sloped(&response)];
+    let regressors = Regressors::new(references.iter().flat_map(of_reference).chain(own));
+    let weights = regressors.weights();
+    let (solution, residual) = regressors.solve(&weights, &response);
+    let freedom = offsets.len().saturating_sub(solution.len()).max(1) as f64;
+    let noise = residual.norm_squared() / freedom;
     (0..references.len())
-        .map(|n| {
-            let weight = inverse.row(2 * n).norm_squared();
-            (solution[2 * n], noise * weight)
-        })
+        .map(|n| (solution[2 * n], noise * weights[2 * n].norm_squared()))
         .collect()
 }
 

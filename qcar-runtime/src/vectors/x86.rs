@@ -3,8 +3,8 @@
 //! Each method enables the same instructions as the functions that call it, and no others. Only then does rustc inline
 //! it; LLVM would take far longer for the thousands of calls of a model. The methods are safe on a machine that has
 //! these instructions.
-#![allow(unsafe_code, reason = "vectors are loaded and stored through pointers")]
-#![allow(
+#![expect(unsafe_code, reason = "vectors are loaded and stored through pointers")]
+#![expect(
     clippy::missing_safety_doc,
     reason = "all functions need the same instructions, as the module states"
 )]

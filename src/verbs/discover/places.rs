@@ -2,6 +2,7 @@
 
 use qcar_dsl::expr::{Expr, Symbol};
 use qcar_dsl::model::{CoordinateKind, Link, Model, Term};
+use qcar_runtime::discover::answer::Verdict;
 use qcar_runtime::discover::locate::{Shape, shape};
 use qcar_runtime::discover::{MissingStiffness, Place};
 use serde::Serialize;
@@ -158,4 +159,12 @@ fn law(link: &Link) -> Vec<Expr> {
         Term::Spring(law) | Term::Damper(law) | Term::Inerter(law) | Term::Force(law) => law,
     };
     link.law.terms.iter().map(of).collect()
+}
+
+/// Places that explain the residuals; none if the verdict is `None`.
+pub(super) fn missing(of: &Answer) -> Vec<PlaceStiffness> {
+    match of.discovery.verdict {
+        Verdict::None => Vec::new(),
+        _ => places(of),
+    }
 }

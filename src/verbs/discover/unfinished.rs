@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use qcar_runtime::discover::answer::Finding;
 use qcar_runtime::discover::posterior::Explanation;
 
-use super::{figure, patched, render};
+use super::{figure, fitted, patched};
 use crate::workshop::Bench;
 
 const MARK: &str = "unfinished: the search was stopped before its verdict";
@@ -30,7 +30,7 @@ pub(super) fn files(
     let heading = format!("{campaign}: {MARK}");
     let model = patched(bench.clone(), findings, &format!("{heading}."));
     let model = model.map(|model| (format!("{}.{MODEL}", model.name), model.text));
-    let parameters = render::parameters(&heading, after);
+    let parameters = fitted::parameters(&heading, after);
     let figure = figure::residuals(heading, [&before.misfit, &after.misfit]).svg();
     let both = [(PARAMETERS.into(), parameters), (FIGURE.into(), figure)];
     model.into_iter().chain(both).collect()

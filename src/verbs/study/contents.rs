@@ -17,7 +17,7 @@ use super::shapes::{Shapes, shapes};
 use super::summary::{Summary, summary};
 use super::track::{Track, track};
 use crate::verbs::diff::parts;
-use crate::verbs::discover::render as discovered;
+use crate::verbs::discover::result as discovered;
 use crate::verbs::fit::render as fitted;
 use crate::verbs::kc::Gradient;
 use crate::verbs::simulate::comparison::Compared;

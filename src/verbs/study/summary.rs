@@ -12,7 +12,7 @@ use super::gather::{Study, Track};
 use super::rig::Ratio;
 use crate::table::{Table, number, or_dash};
 use crate::units;
-use crate::verbs::discover::render::{choice, sentence};
+use crate::verbs::discover::verdict::{choice, sentence};
 use crate::verbs::simulate::comparison::Sizes;
 
 /// The summary.

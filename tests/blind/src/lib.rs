@@ -1,6 +1,6 @@
 //! A second axle simulator that shares no code with qcar. It makes campaigns of axles with hidden effects.
 
-#![allow(
+#![expect(
     missing_docs,
     reason = "fields have the names of the campaign format, the axle tables and the catalogue"
 )]

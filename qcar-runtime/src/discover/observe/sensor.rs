@@ -1,10 +1,10 @@
 //! Sensors as signals of a model.
 
-use crate::campaign::{History, Quantity};
+use crate::campaign::{History, Quantity, Side};
 use crate::model::{About, Signal, SignalKind};
 use crate::response::signal::output_of;
 use crate::spelling::nearest;
-use crate::transmissibility::{End, Point, points};
+use crate::transmissibility::{Point, points};
 
 /// The signal of the model that a sensor measures.
 ///
@@ -31,7 +31,7 @@ pub fn signal_of(about: &About, point: &Point) -> Signal {
 }
 
 fn location_of(about: &About, point: &Point) -> String {
-    let own = format!("{}_{}", point.location, point.end.map_or("sensor", End::name));
+    let own = format!("{}_{}", point.location, point.side.map_or("sensor", Side::name));
     let is_it = |signal: &Signal| signal.location == own && signal.axis == point.axis.name();
     if about.outputs.iter().any(|output| is_it(&output.signal)) {
         own

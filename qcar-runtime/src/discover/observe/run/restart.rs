@@ -89,5 +89,5 @@ pub fn measures(state: &State, point: &Point) -> bool {
         Quantity::Velocity => StateKind::Velocity,
         Quantity::Acceleration | Quantity::Force => return false,
     };
-    point.end.is_none() && state.kind == kind && state.location == point.location && state.axis == point.axis.name()
+    point.side.is_none() && state.kind == kind && state.location == point.location && state.axis == point.axis.name()
 }

@@ -1,0 +1,155 @@
+//! The answer of a search as text.
+
+use std::fmt::Write;
+
+use qcar_runtime::discover::answer::{Probable, Verdict};
+use qcar_runtime::discover::observe::Kind;
+
+use super::Answer;
+use super::finding::described;
+use super::fitted::{at_bound, offsets_table};
+use super::learned;
+use super::nuisances;
+use super::places::{PlaceStiffness, missing};
+use super::verdict::{choice, sentence};
+use crate::effects;
+use crate::sensor_residuals::{channel, left};
+use crate::table::{Table, noted, number, or_dash};
+use crate::units;
+
+pub(super) fn text(of: &Answer) -> String {
+    let (before, after) = (&of.discovery.before.misfit, &of.discovery.after.misfit);
+    let mut out = format!("{}: {}\n{}\n", of.campaign, sentence(of), noted(&of.evidence.notices));
+    let mut residuals = Table::new(["residual_in_sd", "before", "after"]);
+    for (name, before, after) in [
+        ("fit", before.fit, after.fit),
+        ("held_out", before.held_out, after.held_out),
+    ] {
+        residuals.row(vec![name.into(), number(before, 3), number(after, 3)]);
+    }
+    out += &residuals.text();
+    if let Some(probability) = of.discovery.probability {
+        let _ = writeln!(out, "\nprobability of this answer: {probability:.3}");
+    }
+    out += &candidates(&of.discovery.candidates);
+    out += &remaining(of);
+    let certain = of.discovery.certain_and_alternatives().0.len();
+    for (place, (finding, units)) in of.discovery.findings.iter().zip(&of.units).enumerate() {
+        let among = if place < certain { certain } else { certain + 1 };
+        out += &format!("\n{}{}", choice(of, place), described(finding, among, units));
+    }
+    out += &nuisances::text(of);
+    for (name, end) in at_bound(&of.discovery.after) {
+        let _ = writeln!(out, "\n{name} is at the {end} end of its range");
+    }
+    if !of.discovery.after.refit.offsets().is_empty() {
+        out += &format!(
+            "\nzero offsets of the sensors of records\n{}",
+            offsets_table(&of.discovery.after)
+        );
+    }
+    if of.discovery.verdict != Verdict::None {
+        out += &format!("\nlargest residuals of the campaign's model\n{}", tiles(of));
+        out += &missing(of).first().map_or_else(String::new, PlaceStiffness::sentence);
+    }
+    out += &learned::text(of);
+    if !of.discovery.detection_limits.is_empty() {
+        out += &format!(
+            "\neffects that would have been found: their size relative to the smallest that is certain\n{}",
+            detection_limits(of)
+        );
+    }
+    if let Some(file) = of.model.as_ref().and_then(|model| model.file.as_ref()) {
+        let _ = writeln!(out, "\nmodel file: {}", file.display());
+    }
+    out
+}
+
+/// The most probable effects as a table; empty without any. An effect of an answer with several may explain little
+/// alone, so the columns say that they are of the effect alone.
+fn candidates(all: &[Probable]) -> String {
+    if all.is_empty() {
+        return String::new();
+    }
+    let mut table = Table::new([
+        "candidate",
+        "at",
+        "probability",
+        "explains_alone_%",
+        "log_evidence_alone",
+    ]);
+    for own in all {
+        table.row(vec![
+            own.effect.clone(),
+            own.at.clone(),
+            format!("{:.3}", own.probability),
+            or_dash(own.explained.map(|share| 100.0 * share), 3),
+            number(own.log_evidence, 4),
+        ]);
+    }
+    format!("\n{}", table.text())
+}
+
+/// Residual of each sensor.
+fn remaining(of: &Answer) -> String {
+    let mut table = Table::new(["residual_in_%_of_signal", "run", "before", "after"]);
+    for own in left(&of.evidence, [&of.discovery.before, &of.discovery.after]) {
+        let (before, after) = (number(own.before_percent, 3), number(own.after_percent, 3));
+        table.row(vec![own.channel, own.kind.into(), before, after]);
+    }
+    format!("\n{}", table.text())
+}
+
+/// Detection limits as a table.
+fn detection_limits(of: &Answer) -> String {
+    let mut table = Table::new(["effect", "at", "times_the_limit", "of_this_size"]);
+    for own in &of.discovery.detection_limits {
+        let of_effect = effects::units(&own.effect);
+        let usual = own.default_size.iter().map(|(name, value)| {
+            let si = of_effect.get(name).map_or("1", String::as_str);
+            units::with_unit(&format!("{name} {}", number(units::value(*value, si), 3)), si)
+        });
+        table.row(vec![
+            own.effect.clone(),
+            own.at.clone(),
+            number(own.over_limit, 2),
+            usual.collect::<Vec<_>>().join(", "),
+        ]);
+    }
+    table.text()
+}
+
+/// Unit of the span of a tile.
+fn unit_of_span(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Harmonic(_) | Kind::Cycle(_) => "Hz",
+        Kind::Time | Kind::Passage => "s",
+        Kind::Travel | Kind::Width => "m",
+        Kind::Speed => "m/s",
+    }
+}
+
+fn tiles(of: &Answer) -> String {
+    let mut table = Table::new([
+        "channel",
+        "harmonic",
+        "from",
+        "to",
+        "unit",
+        "level",
+        "times_the_uncertainty",
+    ]);
+    for tile in of.discovery.before.misfit.tiles.iter().take(8) {
+        let unit = unit_of_span(tile.kind);
+        table.row(vec![
+            channel(&tile.sensor),
+            tile.kind.order().map_or("-".into(), |order| order.to_string()),
+            number(units::value(tile.span.0, unit), 3),
+            number(units::value(tile.span.1, unit), 3),
+            units::name(unit).into(),
+            number(tile.level, 3),
+            number(tile.strength, 3),
+        ]);
+    }
+    table.text()
+}

@@ -1,0 +1,69 @@
+//! The verdict in words.
+
+use std::cmp::Ordering;
+
+use qcar_runtime::discover::answer::{Finding, Verdict};
+use qcar_runtime::discover::numbers::DOUBTFUL_BELOW;
+
+use super::Answer;
+use crate::table::number;
+
+/// The verdict as a sentence.
+pub(crate) fn sentence(of: &Answer) -> String {
+    let (found, class) = of.discovery.certain_and_alternatives();
+    match of.discovery.verdict {
+        Verdict::None => nothing_found(of),
+        Verdict::Found => format!("found {}", listed(found)),
+        Verdict::Class if found.is_empty() => format!("these data cannot distinguish {}", listed(class)),
+        Verdict::Class => format!(
+            "found {}, and in addition these data cannot distinguish {}",
+            listed(found),
+            listed(class)
+        ),
+        Verdict::Unknown => "something is missing that no effect of the catalogue explains".into(),
+    }
+}
+
+/// RMS residual in standard deviations above which noise does not explain it. Sensors with errors beyond their data
+/// sheets leave less. `LARGE` in the report's `judgement.js` is the same limit.
+const LARGE: f64 = 2.0;
+
+/// The verdict `None` as a sentence. It depends on the held-out runs: if the fitted runs show no effect, the model may
+/// still predict others badly.
+fn nothing_found(of: &Answer) -> String {
+    let gap = &of.discovery.before.misfit;
+    let (runs, left) = match gap.held_out.is_finite() {
+        true => ("held-out", gap.held_out),
+        false => ("fitted", gap.fit),
+    };
+    if left > LARGE {
+        let left = number(left, 3);
+        format!("no effect found, but the {runs} runs have residuals of {left} standard deviations")
+    } else if is_doubtful(of) {
+        "no effect is certain: small residuals above noise remain".into()
+    } else {
+        "no effect found: noise explains the residuals".into()
+    }
+}
+
+/// True if the probability of the answer is below one half.
+fn is_doubtful(of: &Answer) -> bool {
+    of.discovery
+        .probability
+        .is_some_and(|probability| probability < DOUBTFUL_BELOW)
+}
+
+/// Word before the name of a finding: `either` or `or` for an alternative.
+pub(crate) fn choice(of: &Answer, place: usize) -> &'static str {
+    let found = of.discovery.certain_and_alternatives().0.len();
+    match place.cmp(&found) {
+        Ordering::Less => "",
+        Ordering::Equal => "either ",
+        Ordering::Greater => "or ",
+    }
+}
+
+fn listed(findings: &[Finding]) -> String {
+    let names = findings.iter().map(|own| format!("{} at {}", own.effect, own.at));
+    names.collect::<Vec<_>>().join(" and ")
+}
