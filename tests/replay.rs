@@ -11,7 +11,7 @@ use qcar_runtime::campaign::{Axis, Campaign, Quantity, Test, Truth};
 use qcar_runtime::model::Model;
 use qcar_runtime::response::Response;
 use qcar_runtime::response::parameters::Values;
-use qcar_runtime::simulate::replay::Direction;
+use qcar_runtime::simulate::replay::{Deviation, Direction};
 use qcar_runtime::simulate::{Accuracy, Between, Reading, Recorded, Replay, SimulateError, replay};
 use qcar_runtime::spectrum::{synthesize, transform};
 use qcar_runtime::transmissibility::{Point, signal};
@@ -206,7 +206,12 @@ fn derivatives_by_initial_states_are_those_of_differences() {
     let all: Vec<Direction> = (0..states).map(Direction::Initial).collect();
     let derivatives = replay.along(&base, (p, &[]), &all);
     for (state, derivatives) in derivatives.iter().enumerate() {
-        let signals = replay.run(p, &[(state, 1.0)]).signals;
+        let begin = Deviation {
+            sample: 0,
+            state,
+            by: 1.0,
+        };
+        let signals = replay.run(p, &[begin]).signals;
         for ((moved, base), derivative) in signals.iter().zip(&base.signals).zip(derivatives) {
             let difference: Vec<f64> = moved.iter().zip(base).map(|(moved, base)| moved - base).collect();
             let error = derivative
@@ -357,7 +362,14 @@ fn derivatives_agree(model: &str, times: usize, within: f64, by_states: bool) {
             Replay::new(model, vec![recorded], how, restarts.clone(), readings.clone())
         });
         // At rest, tiny differences of the states would change the steps; links at rest would begin at a kink.
-        let begin: Vec<(usize, f64)> = (0..states).map(|state| (state, 0.01 * (state + 1) as f64)).collect();
+        let by = |sample| {
+            move |state| Deviation {
+                sample,
+                state,
+                by: 0.01 * (state + 1) as f64,
+            }
+        };
+        let begin: Vec<Deviation> = (0..states).map(by(0)).chain((0..2).map(by(240 * times))).collect();
         let base = replay.run(&p, &begin);
         let both = |step: f64, run: &dyn Fn(f64) -> Vec<Vec<f64>>| (step, [run(step), run(-step)]);
         let differences = |direction: &Direction| match *direction {
@@ -369,7 +381,8 @@ fn derivatives_agree(model: &str, times: usize, within: f64, by_states: bool) {
             Direction::Amplitude(_) => both(STEP, &|by| if by > 0.0 { &up } else { &down }.run(&p, &begin).signals),
             Direction::Initial(state) => both(STEP * SIZES[state], &|by| {
                 let mut moved = begin.clone();
-                moved[state].1 += by;
+                let own = moved.iter_mut().filter(|own| own.state == state);
+                own.for_each(|own| own.by += by);
                 replay.run(&p, &moved).signals
             }),
         };

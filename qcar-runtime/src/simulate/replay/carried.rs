@@ -45,10 +45,10 @@ impl Carried {
     }
 }
 
-/// The motion of the states that are not set with which a change of a position causes no force; empty if nothing is
+/// The motion of the positions that are not set with which a change of a position causes no force; empty if nothing is
 /// fastened to the mass, or if something holds it.
 fn along(about: &About, a: &DMatrix<f64>, state: usize, set: &[usize]) -> Vec<(usize, f64)> {
-    let is_free = |other: &usize| about.states[*other].kind != StateKind::Velocity && !set.contains(other);
+    let is_free = |other: &usize| about.states[*other].kind == StateKind::Position && !set.contains(other);
     let free: Vec<usize> = (0..about.states.len()).filter(is_free).collect();
     let force: DVector<f64> = a.column(state).into_owned();
     if free.is_empty() || force.norm() == 0.0 {
