@@ -33,7 +33,8 @@ const CARRIAGE: &str = "axle carriage { \"A carriage on a rail\"
 
 /// A campaign of a carriage under position control. `rates` are those of position, speed and of what hangs on it.
 fn carriage<const N: usize>(rates: impl Fn([f64; N], f64) -> [f64; N]) -> tempfile::TempDir {
-    let reference = |f: f64, t: f64| 0.06 * (TAU * f * t).sin() + 0.01 * (TAU * 9.0 * f * t + 1.0).sin();
+    let sine = |size: f64, f: f64, t: f64| size * (TAU * f * t + f).sin();
+    let reference = |f: f64, t: f64| sine(0.06, f, t) + sine(0.01, 9.0 * f, t) + sine(0.01, 31.0 * f, t);
     let control = |f: f64, t: f64, x: [f64; N]| 3e3 * (reference(f, t) - x[0]) - 200.0 * x[1];
     let runs = [0.4, 0.6, 0.9].map(|f| {
         let motion = integrate(|_, x, u| rates(x, u), |t, x| control(f, t, x), (1e-4, 20, 2500));
