@@ -67,12 +67,13 @@ pub struct TestConditions {
     pub initial_states: Vec<Vec<Initial>>,
 }
 
-/// Deviation of a state from the sensor reading, or from rest without a sensor, where a record begins or restarts.
+/// Deviation of a state from the sensor reading, or from rest without a sensor, where a record begins or restarts; or the
+/// zero of a sensor in the whole record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Initial {
     /// The sample.
     pub sample: usize,
-    /// Name of the state.
+    /// Name of the state, or of the zero.
     pub state: String,
     /// Deviation, SI.
     pub by: f64,
