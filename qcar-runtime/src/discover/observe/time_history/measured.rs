@@ -56,7 +56,10 @@ impl Evidence {
         let (spread, restarts) = if periodic {
             (Spread::default(), Vec::new())
         } else {
-            let spread = Spread::of(&responses, &noises, &inputs, rate);
+            let mut spread = Spread::of(&responses, &noises, &inputs, rate);
+            if part.band.as_ref().is_some_and(|band| !band.passes_mean()) {
+                spread.zeros.clear();
+            }
             (spread, restarts(about, run.role, &responses, rate))
         };
         let fewest = IN_A_WINDOW * restarts.len();

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use nalgebra::Complex;
 
 use crate::discover::observe::{
-    Delay, Evidence, Free, Initial, PredictError, Prediction, Recordings, Series, Stimulus, TestConditions,
+    Delay, Evidence, Free, Initial, PredictError, Prediction, Recordings, Series, Spread, Stimulus, TestConditions,
     excitation_of, measures, order_of, signal_of, zero_of,
 };
 use crate::model::{About, Model};
@@ -48,12 +48,9 @@ pub fn history(
     let directions = directions(model, values, free, inputs, &states);
     let mut along = replay.along(&base, (p, &deviations), &directions).into_iter();
     let names = states.iter().map(|&state| about.states[state].name.to_string());
-    let by_zeros = unknown
-        .iter()
-        .filter_map(|(name, _)| by_zero(name, &sensors, inputs.samples));
     let replays = Replays {
         by_parameter: along.by_ref().take(free.len()).collect(),
-        by_initial_states: names.zip(along.by_ref()).chain(by_zeros).collect(),
+        by_initial_states: names.zip(along.by_ref()).collect(),
         by_drive: along.collect(),
         base: with_zeros(base.signals, &sensors, conditions.initial_states_of(run)),
     };
@@ -65,7 +62,11 @@ pub fn history(
             at,
             column,
         };
-        replays.prediction(place, &reader, *rate)
+        let mut prediction = replays.prediction(place, &reader, *rate);
+        if by_states {
+            prediction.by_initial_states.extend(by_zeros(spread, series));
+        }
+        prediction
     };
     Ok(places.iter().zip(&series).enumerate().map(predict).collect())
 }
@@ -278,11 +279,12 @@ fn with_zeros(mut signals: Signals, sensors: &[&Point], initial_states: &[Initia
     signals
 }
 
-/// Derivatives of the signals by the zero of a sensor of this name, with the name; `None` for a state.
-fn by_zero(name: &str, sensors: &[&Point], samples: usize) -> Option<(String, Signals)> {
-    let own = sensors.iter().position(|sensor| zero_of(sensor) == name)?;
-    let column = |place: usize| vec![if place == own { 1.0 } else { 0.0 }; samples];
-    Some((name.to_owned(), (0..sensors.len()).map(column).collect()))
+/// Derivatives of the values of a series by the zeros of all sensors, each with its name.
+fn by_zeros(spread: &Spread, series: &Series) -> impl Iterator<Item = (String, Vec<Complex<f64>>)> {
+    spread.zeros.iter().map(|(sensor, _)| {
+        let slope = if *sensor == series.sensor { 1.0 } else { 0.0 };
+        (zero_of(sensor), vec![Complex::from(slope); series.at.len()])
+    })
 }
 
 /// States that a sensor measures, with their values.
