@@ -285,7 +285,9 @@ fn push(table: &mut Table, record: &ByteRecord, line: u64) -> Result<(), InputEr
 }
 
 fn number(file: &Path, place: impl Fn() -> Place, bytes: &[u8]) -> Result<f64, InputError> {
-    if let Some(number) = decimal(bytes) {
+    if let Ok(number) = fast_float2::parse::<f64, _>(bytes)
+        && number.is_finite()
+    {
         return Ok(number);
     }
     let text = text(file, &place, bytes)?;
@@ -299,83 +301,6 @@ fn number(file: &Path, place: impl Fn() -> Place, bytes: &[u8]) -> Result<f64, I
             };
             let remedy = "a missing sample cannot be filled in: repair the record, or leave out the column or the run";
             Err(Problem::new(file, place(), found, "a finite number", remedy).into())
-        }
-    }
-}
-
-/// A plain decimal number of few digits, such as `-12.345`, which most cells are: an integer over a power of ten. Both
-/// are exact, so their quotient is the nearest number, as that of any parser (W. D. Clinger, PLDI 1990).
-fn decimal(bytes: &[u8]) -> Option<f64> {
-    const POWERS: [f64; 16] = [
-        1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
-    ];
-    let (sign, unsigned) = match bytes.strip_prefix(b"-") {
-        Some(unsigned) => (-1.0, unsigned),
-        None => (1.0, bytes),
-    };
-    let mut integer = 0_u64;
-    let mut point = None;
-    for (at, byte) in unsigned.iter().take(POWERS.len() + 1).enumerate() {
-        match byte {
-            b'0'..=b'9' => integer = 10 * integer + u64::from(byte - b'0'),
-            b'.' if point.is_none() => point = Some(at),
-            _ => return None,
-        }
-    }
-    let digits = unsigned.len() - usize::from(point.is_some());
-    let decimals = point.map_or(0, |point| digits - point);
-    (1..POWERS.len())
-        .contains(&digits)
-        .then(|| sign * integer as f64 / POWERS[decimals])
-}
-
-#[cfg(test)]
-mod tests {
-    use super::decimal;
-
-    #[test]
-    fn a_plain_decimal_is_the_number_that_the_standard_library_reads() {
-        for text in [
-            "0",
-            "-0",
-            "-0.0",
-            "7",
-            "12.345",
-            "-12.345",
-            ".5",
-            "5.",
-            "0.1",
-            "999999999999999",
-            "-0.00000000000001",
-            "12345678.9012345",
-        ] {
-            let expected = text.parse::<f64>().unwrap();
-            assert_eq!(
-                decimal(text.as_bytes()).map(f64::to_bits),
-                Some(expected.to_bits()),
-                "{text}"
-            );
-        }
-    }
-
-    #[test]
-    fn what_is_not_a_plain_decimal_is_left_to_the_standard_library() {
-        for text in [
-            "",
-            "-",
-            ".",
-            "-.",
-            "1.2.3",
-            "+1",
-            "1e3",
-            "inf",
-            "nan",
-            "--1",
-            "1 2",
-            "1234567890123456",
-            "0.1234567890123456",
-        ] {
-            assert_eq!(decimal(text.as_bytes()), None, "{text}");
         }
     }
 }
