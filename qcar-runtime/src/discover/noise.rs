@@ -13,6 +13,6 @@ mod sensor_output;
 mod discrepancy;
 
 pub use calibration::{AccuracyClass, CALIBRATION_BOUND, Form, SENSOR, Shape};
-pub use discrepancy::{Discrepancy, GroupDiscrepancy};
+pub use discrepancy::{Discrepancy, Factors, GroupDiscrepancy};
 pub use nuisance::{InitialState, Known, Nuisance, Suspect};
 pub use sensor_output::SensorOutput;

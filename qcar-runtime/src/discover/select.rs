@@ -99,38 +99,65 @@ pub fn discover(
             quieter = Some(own);
         }
     }
-    let search = |base: Set, known: Option<Set>, evidence: &mut Evidence| {
-        let (mut base, mut known) = (base, known);
+    let search = |sets: Vec<Set>, evidence: &mut Evidence| {
+        let mut sets = sets;
         loop {
-            if let Some(found) = attempt(base, known.take(), evidence, progress) {
-                return Ok::<_, PredictError>(found);
+            if let Some(searched) = attempt(sets, evidence, progress) {
+                return Ok::<_, PredictError>(searched);
             }
             progress(Update::Step("repeating the search with a more accurate integration"));
             *evidence = evidence.integrated_with(Accuracy::HIGH);
-            base = fitted(evidence)?;
+            sets = vec![fitted(evidence)?];
         }
     };
-    let (discovery, found) = search(base, None, evidence)?;
+    let searched = search(vec![base], evidence)?;
     if !evidence.could_be_more_accurate() {
         quieter = quieter.map(|own| own.integrated_with(Accuracy::HIGH));
     }
     // A large missing effect can hide the noise of the inputs, so the filtered inputs are tested again with the answer.
+    let found = searched.found();
     let quieter = quieter.filter(|quieter| {
         let again = found.again(&quieter.evidence);
-        again.is_some_and(|log_evidence| is_more_probable(log_evidence, &found, evidence))
+        again.is_some_and(|log_evidence| is_more_probable(log_evidence, found, evidence))
     });
     let Some(quieter) = quieter else {
         evidence.notices.extend(found.note_on_sensors());
-        return Ok(discovery);
+        return Ok(searched.discovery);
     };
     *evidence = quieter.seen_by(found.assembly.model(), &found.explanation.refit.values)?;
     progress(Update::Step(
-        "repeating the search without the noise of the recorded inputs",
+        "continuing the search without the noise of the recorded inputs",
     ));
-    let known = found.fitted_to(evidence);
-    let (discovery, found) = search(fitted(evidence)?, known, evidence)?;
-    evidence.notices.extend(found.note_on_sensors());
-    Ok(discovery)
+    let searched = search(searched.fitted_to(fitted(evidence)?, evidence), evidence)?;
+    evidence.notices.extend(searched.found().note_on_sensors());
+    Ok(searched.discovery)
+}
+
+/// A search that has ended.
+struct Searched {
+    discovery: Discovery,
+    sets: Vec<Set>,
+    /// Position of the set of the answer.
+    found: usize,
+}
+
+impl Searched {
+    fn found(&self) -> &Set {
+        &self.sets[self.found]
+    }
+
+    /// The sets for nearly the same data, beside the base model that is fitted to them. The most probable one is to be
+    /// extended again: the change may have uncovered a further effect.
+    fn fitted_to(self, mut base: Set, evidence: &Evidence) -> Vec<Set> {
+        let others = self.sets.par_iter().skip(1);
+        let others: Vec<Set> = others.filter_map(|own| own.fitted_to(evidence)).collect();
+        base.extended = self.sets[0].extended;
+        let mut sets = vec![base];
+        sets.extend(others);
+        let best = best(&sets);
+        sets[best].extended = false;
+        sets
+    }
 }
 
 /// True if the same responses are more probable with the other data, by the odds of a certain answer.
@@ -138,22 +165,21 @@ fn is_more_probable(log_evidence: f64, than: &Set, evidence: &Evidence) -> bool 
     log_evidence - than.explanation.refit.log_evidence > evidence.numbers.odds_of_certain().ln()
 }
 
-/// The search from a fitted base model; `None` as soon as the error of the integration of records could change the
-/// answer. `known` is the answer for nearly the same data: the search may miss its minimum now, or find another. Also
-/// returns the set of the answer.
-fn attempt(base: Set, mut known: Option<Set>, evidence: &Evidence, progress: Progress<'_>) -> Option<(Discovery, Set)> {
-    let text = format!("the base model alone leaves {}", rms_text(&base.explanation, evidence));
-    progress(Update::Interim(&text, &[], &base.explanation));
-    let mut sets = vec![base];
+/// The search from fitted sets, of which the first is the base model; `None` as soon as the error of the integration of
+/// records could change the answer.
+fn attempt(mut sets: Vec<Set>, evidence: &Evidence, progress: Progress<'_>) -> Option<Searched> {
+    let text = format!(
+        "the base model alone leaves {}",
+        rms_text(&sets[0].explanation, evidence)
+    );
+    progress(Update::Interim(&text, &[], &sets[0].explanation));
     let mut law = FirstLaw::default();
     let mut accuracy = AccuracyCheck::new(evidence);
     while let Some(place) = next(&sets, evidence) {
         sets[place].extended = true;
         let lead = law.lead(&sets, place, evidence, progress);
-        let more = extensions(&sets[place], lead, evidence, progress);
-        sets.extend(more);
-        if let Some(known) = known.take() {
-            keep_best(known, &mut sets);
+        for own in extensions(&sets[place], lead, evidence, progress) {
+            keep_best(own, &mut sets);
         }
         while let Some(place) = with_untried_forms(&sets, evidence) {
             sets[place].forms_tried = true;
@@ -187,7 +213,7 @@ fn attempt(base: Set, mut known: Option<Set>, evidence: &Evidence, progress: Pro
     if discovery.verdict == Verdict::None {
         discovery.detection_limits = limits(&sets[best_base(&sets)], evidence);
     }
-    Some((discovery, sets.swap_remove(found)))
+    Some(Searched { discovery, sets, found })
 }
 
 /// Learns a law if the answer needs one, and replaces the findings by it if it is certainly more probable. `found` is

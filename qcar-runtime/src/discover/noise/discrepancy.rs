@@ -16,6 +16,8 @@ mod banded;
 mod value;
 // Values that share a discrepancy.
 mod group;
+// Factors that many estimates share.
+mod factors;
 
 use std::mem::discriminant;
 
@@ -23,6 +25,7 @@ use crate::campaign::Role;
 use crate::discover::observe::{Evidence, Kind};
 use crate::mean::mean;
 use crate::transmissibility::Point;
+pub use factors::Factors;
 use group::{Group, Key};
 use value::{Value, values};
 
@@ -144,10 +147,11 @@ impl Discrepancy {
         axes.into_iter().map(|(_, sum)| sum).collect()
     }
 
-    /// Sets every `τ` to its most probable value for these data residuals in units of their noise.
-    pub fn estimate(&mut self, residual: &[f64]) {
-        for group in &mut self.groups {
-            group.estimate(residual);
+    /// Sets every `τ` to its most probable value for these data residuals in units of their noise. `known` keeps the
+    /// factors for other estimates of the same discrepancy.
+    pub fn estimate(&mut self, residual: &[f64], known: &Factors) {
+        for (place, group) in self.groups.iter_mut().enumerate() {
+            group.estimate(residual, |group, tau| known.of(place, tau, || group.factor(tau)));
         }
     }
 

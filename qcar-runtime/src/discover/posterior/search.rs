@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::problem::Posterior;
 use super::refit::Refit;
-use crate::discover::noise::{CALIBRATION_BOUND, Known};
+use crate::discover::noise::{CALIBRATION_BOUND, Factors, Known};
 use crate::discover::observe::PredictError;
 use crate::least_squares::{Bounds, Options, Outcome, Problem, minimize};
 
@@ -105,7 +105,7 @@ impl Posterior<'_> {
         self.residual_and_slopes(place, &mut residual, false);
         residual.truncate(self.residuals);
         if residual.iter().all(|r| r.is_finite()) {
-            discrepancy.estimate(&residual);
+            discrepancy.estimate(&residual, &Factors::default());
         }
         self.discrepancy = Some(discrepancy);
     }

@@ -96,7 +96,17 @@ struct Runner<'a> {
     refit: Option<Refit>,
 }
 
-impl Runner<'_> {
+impl<'a> Runner<'a> {
+    /// A hypothesis outside a race.
+    fn at(place: &Place, hypothesis: &'a Hypothesis<'a>) -> Self {
+        Self {
+            candidate: 0,
+            hypothesis,
+            place: place.clone(),
+            refit: None,
+        }
+    }
+
     fn evidence(&self) -> f64 {
         self.refit
             .as_ref()
@@ -182,20 +192,24 @@ pub fn entrants<'p>(candidates: &[Candidate], screened: &'p [Screened]) -> Vec<&
     entering.map(|(_, entry)| entry).collect()
 }
 
+/// Fits a hypothesis from a place to the coarse data; `None` if its evidence is not finite.
+pub fn on_coarse_data(hypothesis: &Hypothesis<'_>, from: &Place, fidelity: &Fidelity) -> Option<Refit> {
+    let [_, coarse, ..] = &ROUNDS;
+    advance(Runner::at(from, hypothesis), fidelity, coarse, fidelity.has_windows)?.refit
+}
+
 /// Fits a hypothesis from a place to windows of the records, each time twice as long as before, and to all fitted runs.
 /// `None` if an evidence is not finite.
 pub fn through_windows(hypothesis: &Hypothesis<'_>, from: &Place, windows: &Fidelity) -> Option<Refit> {
-    let mut runner = Runner {
-        candidate: 0,
-        hypothesis,
-        place: from.clone(),
-        refit: None,
-    };
     let [.., medium, fine] = &ROUNDS;
-    for (round, is_cut) in [(medium, true), (fine, false)] {
-        runner = advance(runner, windows, round, is_cut)?;
-    }
-    runner.refit
+    let runner = advance(Runner::at(from, hypothesis), windows, medium, true)?;
+    advance(runner, windows, fine, false)?.refit
+}
+
+/// True if a fit may still become as probable as this log evidence: it will hardly make up more in its next search than
+/// it gained in the last one.
+pub fn may_catch_up(refit: &Refit, with: f64) -> bool {
+    with - refit.log_evidence <= refit.gained.max(NOT_SEPARATED)
 }
 
 /// Fits a runner to the data of a round; `is_cut` tells that the records are in windows.

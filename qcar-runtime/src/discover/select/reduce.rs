@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::assembly::{Hypothesis, Place, Placed};
 use super::fidelity::Fidelity;
 use super::finite_explanation;
-use super::race::{FINE_BUDGET, MOST_REPETITIONS, may_gain_more, through_windows};
+use super::race::{FINE_BUDGET, MOST_REPETITIONS, may_catch_up, may_gain_more, on_coarse_data, through_windows};
 use super::set::Set;
 use super::tangent::Tangent;
 use crate::discover::answer::{Progress, Update};
@@ -36,9 +36,11 @@ pub struct Reduction<'a> {
     tangent: Tangent,
     /// The evidence without the non-steady parts, and its runs that are fitted.
     steady: Evidence,
-    fitted: Evidence,
+    usual: Fidelity,
     /// The same with records in windows; `None` without records that can be cut.
     windows: Option<Fidelity>,
+    /// Log evidence of the set on the coarse data, those in windows if there are any.
+    on_coarse_data: Option<f64>,
 }
 
 impl<'a> Reduction<'a> {
@@ -46,15 +48,20 @@ impl<'a> Reduction<'a> {
     pub fn of(set: &'a Set, base: &'a Set, evidence: &'a Evidence) -> Self {
         let refit = &set.explanation.refit;
         let steady = evidence.minus(&refit.unsteady).with_step_limit();
-        let fitted = Fidelity::of(&steady).fine;
+        let usual = Fidelity::of(&steady);
+        let windows = Fidelity::in_windows(&steady);
+        let hypothesis = set.assembly.hypothesis();
+        let coarse = windows.as_ref().unwrap_or(&usual);
+        let on_coarse_data = on_coarse_data(&hypothesis, &hypothesis.place(refit), coarse);
         Self {
+            on_coarse_data: on_coarse_data.map(|own| own.log_evidence),
             set,
             base,
             evidence,
-            tangent: Tangent::new(refit, &set.assembly, &fitted),
-            windows: Fidelity::in_windows(&steady),
+            tangent: Tangent::new(refit, &set.assembly, &usual.fine),
+            windows,
+            usual,
             steady,
-            fitted,
         }
     }
 
@@ -66,6 +73,9 @@ impl<'a> Reduction<'a> {
         let hypothesis = assembly.hypothesis();
         let share = self.set.log_prior * others.len() as f64 / effects.len() as f64;
         let starts = self.starts_without(&effects[left_out], &hypothesis);
+        if starts.par_iter().all(|from| self.is_hopeless(from, &hypothesis)) {
+            return None;
+        }
         let set = |refit: Refit| {
             let explanation = self.explanation(&hypothesis, refit)?;
             Some(Set::new(assembly.clone(), explanation, share))
@@ -84,10 +94,18 @@ impl<'a> Reduction<'a> {
         best.into_iter().chain(in_windows).max_by(more_probable)
     }
 
-    /// The explanation by a fit, which is continued if it has not converged.
+    /// True if a smaller set is so much less probable than the set on the coarse data already that it lacks the effect.
+    fn is_hopeless(&self, from: &Place, hypothesis: &Hypothesis<'_>) -> bool {
+        let coarse = self.windows.as_ref().unwrap_or(&self.usual);
+        let refit = on_coarse_data(hypothesis, from, coarse);
+        let both = refit.zip(self.on_coarse_data);
+        both.is_some_and(|(refit, with)| !may_catch_up(&refit, with))
+    }
+
+    /// The explanation by a fit, which is continued if it has not converged and may become as probable as the set.
     fn explanation(&self, hypothesis: &Hypothesis<'_>, mut refit: Refit) -> Option<Explanation> {
         for _ in 0..MOST_REPETITIONS {
-            if !may_gain_more(&refit) {
+            if !may_gain_more(&refit) || !may_catch_up(&refit, self.set.explanation.refit.log_evidence) {
                 break;
             }
             let reached = hypothesis.place(&refit);
@@ -107,7 +125,7 @@ impl<'a> Reduction<'a> {
             place
         };
         let left = |place: &Place| {
-            let residual = hypothesis.residuals_at(place, refit, &self.fitted);
+            let residual = hypothesis.residuals_at(place, refit, &self.usual.fine);
             residual.map_or(f64::INFINITY, |residual| residual.norm_squared())
         };
         let here = self.set.assembly.hypothesis().place(refit);

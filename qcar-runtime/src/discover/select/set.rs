@@ -78,16 +78,17 @@ impl Set {
         Some(refit.log_evidence).filter(|own| own.is_finite())
     }
 
-    /// The set fitted to other evidence of the same runs, from the present optimum; `None` if the fit fails.
+    /// The set fitted to other evidence of the same runs, from the present optimum; `None` if the fit fails. The searches
+    /// that have started from it are not repeated.
     pub fn fitted_to(&self, evidence: &Evidence) -> Option<Self> {
         let hypothesis = self.assembly.hypothesis();
         let from = hypothesis.place(&self.explanation.refit);
         let refit = hypothesis.fit(&from, &self.steady(evidence), AGAIN).ok()?;
         let explanation = finite_explanation(&hypothesis, refit, evidence)?;
-        let rivals = self.rivals.clone();
         Some(Self {
-            rivals,
-            ..Self::new(self.assembly.clone(), explanation, self.log_prior)
+            explanation,
+            with_sensors: Arc::default(),
+            ..self.clone()
         })
     }
 

@@ -4,7 +4,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::assembly::Assembly;
 use crate::campaign::Role;
-use crate::discover::noise::Discrepancy;
+use crate::discover::noise::{Discrepancy, Factors};
 use crate::discover::observe::Evidence;
 use crate::discover::posterior::Refit;
 use crate::least_squares::gram;
@@ -28,6 +28,8 @@ pub struct Tangent {
     gradient: DVector<f64>,
     /// The discrepancy of the fit.
     discrepancy: Discrepancy,
+    /// Its factors for the estimates from other residuals.
+    factors: Factors,
     /// Negative log posterior density, up to a constant.
     cost: f64,
     data: usize,
@@ -63,6 +65,7 @@ impl Tangent {
             gradient: white_jacobian.tr_mul(&white),
             cost: known.cost() + white.norm_squared() / 2.0,
             discrepancy: known,
+            factors: Factors::default(),
             residual,
             jacobian,
             white,
@@ -147,7 +150,7 @@ impl Tangent {
             return f64::NEG_INFINITY;
         }
         let mut discrepancy = self.discrepancy.clone();
-        discrepancy.estimate(residual.as_slice());
+        discrepancy.estimate(residual.as_slice(), &self.factors);
         discrepancy.whiten(residual.as_mut_slice());
         self.cost - discrepancy.cost() - residual.norm_squared() / 2.0
     }

@@ -31,6 +31,11 @@ impl Banded {
         banded
     }
 
+    /// Number of stored entries.
+    pub fn entries(&self) -> usize {
+        self.entries.len()
+    }
+
     /// `1 + factor · self`.
     pub fn identity_plus(&self, factor: f64) -> Self {
         let mut scaled = self.clone();

@@ -2,6 +2,7 @@
 
 use std::mem::Discriminant;
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::banded::Banded;
 use super::value::{Value, runs};
@@ -14,23 +15,23 @@ use crate::transmissibility::Point;
 pub struct Group {
     pub key: Key,
     /// Residual rows of each value, in the order of its position.
-    rows: Vec<[usize; 2]>,
+    rows: Arc<[[usize; 2]]>,
     /// Number of values in each correlation length, in the same order.
-    cells: Vec<usize>,
+    cells: Arc<[usize]>,
     /// Number of residual rows of a value: two if it is complex.
     parts: usize,
     /// Weight of the log likelihood of each series. An error of the tyre law is the same in all cleat runs, and one
     /// force moves all masses along an axis, so all series of cleat runs along one axis together count as one.
     weight: f64,
     /// Covariance in units of the noise for `τ` = 1.
-    correlation: Banded,
+    correlation: Arc<Banded>,
     /// Smallest `τ`.
     least: f64,
     /// Mean of the exponential prior of `τ`.
     expected: f64,
     pub tau: f64,
     /// Cholesky factor of the covariance in units of the noise; `None` if `τ` is zero.
-    factor: Option<Banded>,
+    factor: Option<Arc<Banded>>,
 }
 
 /// Identity of a group.
@@ -81,7 +82,7 @@ impl Group {
                 .map(<[Value]>::len)
                 .collect(),
             parts: values.first().map_or(1, |value| value.parts),
-            correlation: Banded::new(values.len(), correlated, entry),
+            correlation: Arc::new(Banded::new(values.len(), correlated, entry)),
             least,
             expected: numbers.expected_discrepancy,
             tau: 0.0,
@@ -92,8 +93,8 @@ impl Group {
     }
 
     pub fn set(&mut self, tau: f64) {
+        self.factor = (tau > 0.0).then(|| Arc::new(self.factor(tau)));
         self.tau = tau;
-        self.factor = (tau > 0.0).then(|| self.factor(tau));
     }
 
     /// Negative log prior of `τ`, up to a constant. The prior is exponential, so it allows zero.
@@ -101,19 +102,20 @@ impl Group {
         tau / self.expected
     }
 
-    fn factor(&self, tau: f64) -> Banded {
+    /// Cholesky factor of the covariance in units of the noise for this `τ`.
+    pub fn factor(&self, tau: f64) -> Banded {
         self.correlation.identity_plus(tau * tau).cholesky()
     }
 
     /// Half the log determinant of the covariance of all parts.
     pub fn log_determinant(&self) -> f64 {
-        let of_part: f64 = self.factor.iter().flat_map(Banded::log_diagonal).sum();
+        let of_part: f64 = self.factor.iter().flat_map(|factor| factor.log_diagonal()).sum();
         self.weight * self.parts as f64 * of_part
     }
 
     /// Log likelihood of whitened residuals, up to a constant, for each correlation length given those before it.
     pub fn log_likelihoods(&self, whitened: &[f64]) -> Vec<f64> {
-        let mut determinant = self.factor.iter().flat_map(Banded::log_diagonal);
+        let mut determinant = self.factor.iter().flat_map(|factor| factor.log_diagonal());
         let mut rows = self.rows.iter();
         let of_value = |rows: &[usize; 2]| {
             let square: f64 = rows[..self.parts].iter().map(|&row| whitened[row].powi(2)).sum();
@@ -141,12 +143,12 @@ impl Group {
     }
 
     /// Negative log likelihood of residuals plus the negative log prior, up to a constant.
-    fn cost(&self, tau: f64, residual: &[Vec<f64>]) -> f64 {
+    fn cost(&self, tau: f64, residual: &[Vec<f64>], factor: impl Fn(f64) -> Arc<Banded>) -> f64 {
         let square = |values: &[f64]| self.weight * values.iter().map(|value| value * value).sum::<f64>() / 2.0;
         if tau == 0.0 {
             return residual.iter().map(|part| square(part)).sum();
         }
-        let factor = self.factor(tau);
+        let factor = factor(tau);
         let of_part = |part: &Vec<f64>| {
             let mut values = part.clone();
             factor.forward(&mut values);
@@ -155,11 +157,13 @@ impl Group {
         residual.iter().map(of_part).sum::<f64>() + self.prior(tau)
     }
 
-    /// Sets `τ` to its most probable value: golden section over log `τ`, compared with the smallest `τ`.
-    pub fn estimate(&mut self, residual: &[f64]) {
+    /// Sets `τ` to its most probable value: golden section over log `τ`, compared with the smallest `τ`. `factor` gives
+    /// [`Self::factor`] of any `τ`.
+    pub fn estimate(&mut self, residual: &[f64], factor: impl Fn(&Self, f64) -> Arc<Banded>) {
         let part = |part: usize| self.rows.iter().map(|rows| residual[rows[part]]).collect();
         let residual: Vec<Vec<f64>> = (0..self.parts).map(part).collect();
-        let cost = |log: f64| self.cost(log.exp(), &residual);
+        let factor = |tau: f64| factor(self, tau);
+        let cost = |log: f64| self.cost(log.exp(), &residual, factor);
         let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
         let (mut low, mut high) = (SMALLEST_TAU.max(self.least).ln(), LARGEST_TAU.ln());
         let mut inner = [high - golden * (high - low), low + golden * (high - low)];
@@ -180,12 +184,13 @@ impl Group {
         } else {
             (inner[1], costs[1])
         };
-        let tau = if least < self.cost(self.least, &residual) {
+        let tau = if least < self.cost(self.least, &residual, factor) {
             log.exp()
         } else {
             self.least
         };
-        self.set(tau);
+        self.factor = (tau > 0.0).then(|| factor(tau));
+        self.tau = tau;
     }
 }
 

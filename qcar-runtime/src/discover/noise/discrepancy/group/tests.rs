@@ -1,4 +1,5 @@
 use std::mem::discriminant;
+use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
@@ -87,12 +88,12 @@ fn discrepancy_is_estimated_from_its_own_draws() {
         (-2.0 * a.max(1e-12).ln()).sqrt() * (std::f64::consts::TAU * b).cos()
     };
     let white: Vec<f64> = (0..400).map(normal).collect();
-    group.estimate(&white);
+    group.estimate(&white, |group, tau| Arc::new(group.factor(tau)));
     assert!(group.tau < 0.01, "{} of noise alone", group.tau);
     let truth: f64 = 0.1;
     let factor = group.factor(truth);
     let drawn = factor.times(&white);
-    group.estimate(&drawn);
+    group.estimate(&drawn, |group, tau| Arc::new(group.factor(tau)));
     assert!((group.tau / truth - 1.0).abs() < 0.25, "{}, not {truth}", group.tau);
 }
 
