@@ -1,10 +1,10 @@
 //! The names in the answer: the smallest set of hypotheses that reaches the required probability (a credible set).
 
-use rayon::prelude::*;
+use std::cell::OnceCell;
 
 use super::held_out::{is_refuted, supported_part};
 use super::probability::probabilities;
-use super::set::{Set, best_base, is_part, most_probable};
+use super::set::{Set, best_base, is_part, most_probable_first};
 use crate::discover::observe::Evidence;
 
 /// Sets with the same names, and their joint probability.
@@ -17,20 +17,30 @@ pub struct Answer {
     pub dismissed: bool,
 }
 
+/// Joint probability of sets that are left out of the answers, relative to that of the answers that are not dismissed.
+/// A choice, far below any probability that is shown.
+const NEGLIGIBLE: f64 = 1e-9;
+
 /// The answers, most probable first. Merges sets with the same names.
 pub fn answers(sets: &[Set], evidence: &Evidence) -> Vec<Answer> {
     let probability = probabilities(&sets.iter().collect::<Vec<_>>(), evidence);
-    let supported: Vec<usize> = (0..sets.len())
-        .into_par_iter()
-        .map(|place| supported_part(sets, place, evidence))
-        .collect();
+    let supported = Supported::new(sets, evidence);
+    let mut places: Vec<usize> = (0..sets.len()).collect();
+    places.sort_by(|a, b| probability[*b].total_cmp(&probability[*a]));
     let mut answers: Vec<Answer> = Vec::new();
-    for (place, probability) in probability.iter().copied().enumerate() {
-        let dismissed = supported[place] != place && sets[supported[place]].names().is_empty();
+    for (k, &place) in places.iter().enumerate() {
+        let open: f64 = places[k..].iter().map(|&place| probability[place]).sum();
+        let possible = answers.iter().filter(|own| !own.dismissed);
+        let possible: f64 = possible.map(|own| own.probability).sum();
+        if possible > 0.0 && open <= NEGLIGIBLE * possible {
+            break;
+        }
+        let part = supported.part_of(place);
+        let dismissed = part != place && sets[part].names().is_empty();
         let set = if dismissed {
             place
         } else {
-            represented_by(place, sets, &supported)
+            supported.represented_by(place)
         };
         let is_it = |own: &&mut Answer| own.dismissed == dismissed && sets[own.set].names() == sets[set].names();
         match answers.iter_mut().find(is_it) {
@@ -38,11 +48,11 @@ pub fn answers(sets: &[Set], evidence: &Evidence) -> Vec<Answer> {
                 if sets[set].log_posterior() > sets[own.set].log_posterior() {
                     own.set = set;
                 }
-                own.probability += probability;
+                own.probability += probability[place];
             }
             None => answers.push(Answer {
                 set,
-                probability,
+                probability: probability[place],
                 dismissed,
             }),
         }
@@ -55,16 +65,40 @@ pub fn answers(sets: &[Set], evidence: &Evidence) -> Vec<Answer> {
     answers
 }
 
-/// The set to whose probability a set contributes. If the held-out runs support the whole set, that is the set itself.
-/// Otherwise it is the most probable fully supported set that contains the supported part: the part shows that its
-/// effects are present, but not that no other is.
-fn represented_by(place: usize, sets: &[Set], supported: &[usize]) -> usize {
-    if supported[place] == place {
-        return place;
+/// The parts of sets that the held-out runs support, each found when it is first needed.
+struct Supported<'a> {
+    sets: &'a [Set],
+    evidence: &'a Evidence,
+    parts: Vec<OnceCell<usize>>,
+}
+
+impl<'a> Supported<'a> {
+    fn new(sets: &'a [Set], evidence: &'a Evidence) -> Self {
+        Self {
+            sets,
+            evidence,
+            parts: vec![OnceCell::new(); sets.len()],
+        }
     }
-    let part = supported[place];
-    let is_supported = |&other: &usize| supported[other] == other && is_part(&sets[part], &sets[other]);
-    most_probable(sets, (0..sets.len()).filter(is_supported)).unwrap_or(part)
+
+    /// The supported part of the set at this position.
+    fn part_of(&self, place: usize) -> usize {
+        *self.parts[place].get_or_init(|| supported_part(self.sets, place, self.evidence))
+    }
+
+    /// The set to whose probability a set contributes. If the held-out runs support the whole set, that is the set
+    /// itself. Otherwise it is the most probable fully supported set that contains the supported part: the part shows
+    /// that its effects are present, but not that no other is.
+    fn represented_by(&self, place: usize) -> usize {
+        let (sets, part) = (self.sets, self.part_of(place));
+        if part == place {
+            return place;
+        }
+        let contains_part = |&other: &usize| is_part(&sets[part], &sets[other]);
+        let others = most_probable_first(sets, (0..sets.len()).filter(contains_part));
+        let supported = others.into_iter().find(|&other| self.part_of(other) == other);
+        supported.unwrap_or(part)
+    }
 }
 
 /// The credible set: the most probable names that together reach the required probability, without names that only add

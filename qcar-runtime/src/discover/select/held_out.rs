@@ -1,6 +1,8 @@
 //! Checks sets on the held-out runs, which no fit has used.
 
-use super::set::{Set, excess, explained_share, is_part, most_probable};
+use rayon::prelude::*;
+
+use super::set::{Set, excess, explained_share, is_part, most_probable_first};
 use crate::campaign::Role;
 use crate::discover::observe::Evidence;
 use crate::discover::posterior::Explanation;
@@ -26,7 +28,8 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
                 || sets[best].adds_effect_at_bound(&sets[part], evidence)
                 || rests_on_passages(&sets[best], &sets[part], evidence)
         };
-        match most_probable(sets, (0..sets.len()).filter(is_answer).filter(withdrawn)) {
+        let parts = most_probable_first(sets, (0..sets.len()).filter(is_answer));
+        match parts.into_par_iter().find_first(withdrawn) {
             Some(part) => best = part,
             None => return best,
         }

@@ -6,9 +6,10 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::assembly::{Hypothesis, Place, Placed};
+use super::coarse_check::CoarseCheck;
 use super::fidelity::Fidelity;
 use super::finite_explanation;
-use super::race::{FINE_BUDGET, MOST_REPETITIONS, may_catch_up, may_gain_more, on_coarse_data, through_windows};
+use super::race::{FINE_BUDGET, MOST_REPETITIONS, may_catch_up, may_gain_more, through_windows};
 use super::set::Set;
 use super::tangent::Tangent;
 use crate::discover::answer::{Progress, Update};
@@ -36,11 +37,10 @@ pub struct Reduction<'a> {
     tangent: Tangent,
     /// The evidence without the non-steady parts, and its runs that are fitted.
     steady: Evidence,
-    usual: Fidelity,
+    fitted: Evidence,
     /// The same with records in windows; `None` without records that can be cut.
     windows: Option<Fidelity>,
-    /// Log evidence of the set on the coarse data, those in windows if there are any.
-    on_coarse_data: Option<f64>,
+    check: CoarseCheck,
 }
 
 impl<'a> Reduction<'a> {
@@ -48,19 +48,15 @@ impl<'a> Reduction<'a> {
     pub fn of(set: &'a Set, base: &'a Set, evidence: &'a Evidence) -> Self {
         let refit = &set.explanation.refit;
         let steady = evidence.minus(&refit.unsteady).with_step_limit();
-        let usual = Fidelity::of(&steady);
-        let windows = Fidelity::in_windows(&steady);
-        let hypothesis = set.assembly.hypothesis();
-        let coarse = windows.as_ref().unwrap_or(&usual);
-        let on_coarse_data = on_coarse_data(&hypothesis, &hypothesis.place(refit), coarse);
+        let fitted = Fidelity::of(&steady).fine;
         Self {
-            on_coarse_data: on_coarse_data.map(|own| own.log_evidence),
             set,
             base,
             evidence,
-            tangent: Tangent::new(refit, &set.assembly, &usual.fine),
-            windows,
-            usual,
+            tangent: Tangent::new(refit, &set.assembly, &fitted),
+            check: CoarseCheck::of(set, &steady),
+            windows: Fidelity::in_windows(&steady),
+            fitted,
             steady,
         }
     }
@@ -73,7 +69,7 @@ impl<'a> Reduction<'a> {
         let hypothesis = assembly.hypothesis();
         let share = self.set.log_prior * others.len() as f64 / effects.len() as f64;
         let starts = self.starts_without(&effects[left_out], &hypothesis);
-        if starts.par_iter().all(|from| self.is_hopeless(from, &hypothesis)) {
+        if starts.par_iter().all(|from| self.check.is_hopeless(&hypothesis, from)) {
             return None;
         }
         let set = |refit: Refit| {
@@ -92,14 +88,6 @@ impl<'a> Reduction<'a> {
         let in_windows = windows.and_then(|(windows, from)| through_windows(&hypothesis, from, windows));
         let in_windows = in_windows.and_then(set);
         best.into_iter().chain(in_windows).max_by(more_probable)
-    }
-
-    /// True if a smaller set is so much less probable than the set on the coarse data already that it lacks the effect.
-    fn is_hopeless(&self, from: &Place, hypothesis: &Hypothesis<'_>) -> bool {
-        let coarse = self.windows.as_ref().unwrap_or(&self.usual);
-        let refit = on_coarse_data(hypothesis, from, coarse);
-        let both = refit.zip(self.on_coarse_data);
-        both.is_some_and(|(refit, with)| !may_catch_up(&refit, with))
     }
 
     /// The explanation by a fit, which is continued if it has not converged and may become as probable as the set.
@@ -125,7 +113,7 @@ impl<'a> Reduction<'a> {
             place
         };
         let left = |place: &Place| {
-            let residual = hypothesis.residuals_at(place, refit, &self.usual.fine);
+            let residual = hypothesis.residuals_at(place, refit, &self.fitted);
             residual.map_or(f64::INFINITY, |residual| residual.norm_squared())
         };
         let here = self.set.assembly.hypothesis().place(refit);

@@ -259,6 +259,13 @@ pub fn most_probable(sets: &[Set], places: impl IntoIterator<Item = usize>) -> O
     places.into_iter().max_by(order)
 }
 
+/// These positions, that of the most probable set first.
+pub fn most_probable_first(sets: &[Set], places: impl IntoIterator<Item = usize>) -> Vec<usize> {
+    let mut places: Vec<usize> = places.into_iter().collect();
+    places.sort_by(|a, b| sets[*b].log_posterior().total_cmp(&sets[*a].log_posterior()));
+    places
+}
+
 /// The most probable set without named effects: the base model with the nuisance effects that the data show.
 pub fn best_base(sets: &[Set]) -> usize {
     let unnamed = (0..sets.len()).filter(|&place| sets[place].names().is_empty());
