@@ -1,33 +1,71 @@
-//! Whether another set can become as probable as a known one, by fits to the coarse data.
+//! Whether another set can be an alternative to a known one, by fits to short windows of the records.
+//!
+//! A fit to whole records takes long, and phase errors may lead it to a local minimum. Short windows show what moves in
+//! them wherever a fit begins.
 
 use super::assembly::{Hypothesis, Place};
 use super::fidelity::Fidelity;
-use super::race::{may_catch_up, on_coarse_data};
-use super::set::Set;
+use super::race::{FINE_BUDGET, continued, may_catch_up};
+use super::set::{Set, above_noise};
 use crate::discover::observe::Evidence;
+use crate::discover::posterior::Refit;
+use crate::mean::rms_or_nan;
 
-/// A set on the coarse data. Records are in windows there if they can be cut, so that phase errors hide nothing.
+/// A set on the coarse data in windows.
 pub struct CoarseCheck {
-    fidelity: Fidelity,
-    /// Log evidence of the set; `None` if its fit fails.
-    known: Option<f64>,
+    coarse: Evidence,
+    /// The fit of the set; `None` if it fails.
+    known: Option<Fitted>,
+    /// Log prior odds of the set.
+    log_prior: f64,
+}
+
+/// A fit to the coarse data.
+struct Fitted {
+    refit: Refit,
+    /// Mean square of its residuals above that of noise.
+    excess: f64,
 }
 
 impl CoarseCheck {
-    /// The set on the coarse part of evidence without non-steady parts.
-    pub fn of(set: &Set, steady: &Evidence) -> Self {
-        let fidelity = Fidelity::in_windows(steady).unwrap_or_else(|| Fidelity::of(steady));
+    /// The set on the coarse data; `windows` is evidence without non-steady parts, in windows.
+    pub fn of(set: &Set, windows: &Fidelity) -> Self {
+        let coarse = windows.coarse.clone();
         let hypothesis = set.assembly.hypothesis();
-        let known = on_coarse_data(&hypothesis, &hypothesis.place(&set.explanation.refit), &fidelity);
+        let place = hypothesis.place(&set.explanation.refit);
         Self {
-            fidelity,
-            known: known.map(|own| own.log_evidence),
+            known: Fitted::from(&place, &hypothesis, &coarse, |_| true),
+            coarse,
+            log_prior: set.log_prior,
         }
     }
 
-    /// True if a fit from here is so much less probable than the set that fits to more data are in vain.
-    pub fn is_hopeless(&self, hypothesis: &Hypothesis<'_>, from: &Place) -> bool {
-        let both = on_coarse_data(hypothesis, from, &self.fidelity).zip(self.known);
-        both.is_some_and(|(refit, known)| !may_catch_up(&refit, known))
+    /// True if fits of another set with these prior odds to more data are in vain: from here it is so much less probable
+    /// that it cannot become as probable, and the set explains nearly all of the residual that it leaves.
+    pub fn is_hopeless(&self, hypothesis: &Hypothesis<'_>, from: &Place, log_prior: f64) -> bool {
+        let Some(known) = &self.known else { return false };
+        let even = known.refit.log_evidence + self.log_prior - log_prior;
+        let is_behind = |refit: &Refit| refit.log_evidence < even;
+        let Some(fitted) = Fitted::from(from, hypothesis, &self.coarse, is_behind) else {
+            return false;
+        };
+        let unexplained = 1.0 - self.coarse.numbers.certain();
+        !may_catch_up(&fitted.refit, even) && known.excess <= unexplained * fitted.excess
+    }
+}
+
+impl Fitted {
+    /// A fit that ends when it converges or is no longer worth it.
+    fn from(
+        place: &Place,
+        hypothesis: &Hypothesis<'_>,
+        coarse: &Evidence,
+        is_worth_it: impl Fn(&Refit) -> bool,
+    ) -> Option<Self> {
+        let refit = hypothesis.fit(place, coarse, FINE_BUDGET).ok()?;
+        let refit = continued(hypothesis, refit, coarse, is_worth_it)?;
+        let residuals = hypothesis.residuals_at(&hypothesis.place(&refit), &refit, coarse)?;
+        let excess = above_noise(rms_or_nan(residuals.iter().copied()));
+        refit.log_evidence.is_finite().then_some(Self { refit, excess })
     }
 }

@@ -7,7 +7,6 @@
 use rayon::prelude::*;
 
 use super::assembly::{Assembly, Place, Placed};
-use super::coarse_check::CoarseCheck;
 use super::fidelity::Fidelity;
 use super::finite_explanation;
 use super::race::FINE_BUDGET;
@@ -30,8 +29,7 @@ pub fn exchanges(set: &Set, sets: &[Set], evidence: &Evidence) -> Vec<Set> {
         chosen.log_posterior() - rival.log_posterior() < gained
     });
     let open: Vec<(&Set, &Set)> = open.collect();
-    let check = check(set, evidence);
-    let exchanged = |(chosen, rival)| exchanged((set, &check), chosen, rival, sets, evidence);
+    let exchanged = |(chosen, rival)| exchanged(set, chosen, rival, sets, evidence);
     open.into_par_iter().filter_map(exchanged).collect()
 }
 
@@ -51,7 +49,6 @@ pub fn other_forms(set: &Set, sets: &[Set], evidence: &Evidence) -> Vec<Set> {
             })
         })
         .collect();
-    let check = check(set, evidence);
     let fitted = changed.par_iter().filter_map(|effects| {
         let effects: Vec<&Placed> = effects.iter().collect();
         if sets.iter().any(|known| has_all(known, &effects)) {
@@ -59,7 +56,7 @@ pub fn other_forms(set: &Set, sets: &[Set], evidence: &Evidence) -> Vec<Set> {
         }
         let assembly = base.with_all(&effects)?;
         let from = set.assembly.hypothesis().place(&set.explanation.refit);
-        refitted(assembly, &from, (set, &check), set.log_prior, evidence)
+        refitted(assembly, &from, set, set.log_prior, evidence)
     });
     fitted.collect()
 }
@@ -85,13 +82,7 @@ fn is_same(own: &Placed, other: &Placed) -> bool {
 
 /// The set with the last effect of `chosen` replaced by the last effect of `rival`; `None` if that set is known or
 /// cannot be fitted.
-fn exchanged(
-    (set, check): (&Set, &CoarseCheck),
-    chosen: &Set,
-    rival: &Set,
-    sets: &[Set],
-    evidence: &Evidence,
-) -> Option<Set> {
+fn exchanged(set: &Set, chosen: &Set, rival: &Set, sets: &[Set], evidence: &Evidence) -> Option<Set> {
     let later = &set.assembly.effects()[chosen.assembly.effects().len()..];
     let effects: Vec<&Placed> = rival.assembly.effects().iter().chain(later).collect();
     if sets.iter().any(|known| has_all(known, &effects)) {
@@ -105,26 +96,13 @@ fn exchanged(
     }
     from.discrepancy = there.discrepancy;
     let prior = rival.log_prior + set.log_prior - chosen.log_prior;
-    refitted(assembly, &from, (rival, check), prior, evidence)
-}
-
-fn check(set: &Set, evidence: &Evidence) -> CoarseCheck {
-    CoarseCheck::of(set, &evidence.minus(&set.explanation.refit.unsteady).with_step_limit())
+    refitted(assembly, &from, rival, prior, evidence)
 }
 
 /// A set with these effects, fitted from a place and with the non-steady part of a similar set; `None` if it cannot be
-/// fitted, or become as probable as the set of the check.
-fn refitted(
-    assembly: Assembly,
-    from: &Place,
-    (similar, check): (&Set, &CoarseCheck),
-    log_prior: f64,
-    evidence: &Evidence,
-) -> Option<Set> {
+/// fitted.
+fn refitted(assembly: Assembly, from: &Place, similar: &Set, log_prior: f64, evidence: &Evidence) -> Option<Set> {
     let hypothesis = assembly.hypothesis();
-    if check.is_hopeless(&hypothesis, from) {
-        return None;
-    }
     let steady = evidence.minus(&similar.explanation.refit.unsteady).with_step_limit();
     let refit = hypothesis.fit(from, &Fidelity::of(&steady).fine, FINE_BUDGET).ok()?;
     let explanation = finite_explanation(&hypothesis, refit, evidence)?;

@@ -192,10 +192,20 @@ pub fn entrants<'p>(candidates: &[Candidate], screened: &'p [Screened]) -> Vec<&
     entering.map(|(_, entry)| entry).collect()
 }
 
-/// Fits a hypothesis from a place to the coarse data; `None` if its evidence is not finite.
-pub fn on_coarse_data(hypothesis: &Hypothesis<'_>, from: &Place, fidelity: &Fidelity) -> Option<Refit> {
-    let [_, coarse, ..] = &ROUNDS;
-    advance(Runner::at(from, hypothesis), fidelity, coarse, fidelity.has_windows)?.refit
+/// Repeats a fit that ended at its limit of evaluations as long as it is worth it; `None` if a fit fails.
+pub fn continued(
+    hypothesis: &Hypothesis<'_>,
+    mut refit: Refit,
+    evidence: &Evidence,
+    is_worth_it: impl Fn(&Refit) -> bool,
+) -> Option<Refit> {
+    for _ in 0..MOST_REPETITIONS {
+        if !may_gain_more(&refit) || !is_worth_it(&refit) {
+            break;
+        }
+        refit = hypothesis.fit(&hypothesis.place(&refit), evidence, FINE_BUDGET).ok()?;
+    }
+    Some(refit)
 }
 
 /// Fits a hypothesis from a place to windows of the records, each time twice as long as before, and to all fitted runs.
@@ -238,10 +248,10 @@ fn run<'a>(mut runner: Runner<'a>, evidence: &Evidence, budget: (usize, usize)) 
 }
 
 /// Most repetitions of a fit that has not converged. A choice, which limits the time for hopeless candidates.
-pub const MOST_REPETITIONS: usize = 4;
+const MOST_REPETITIONS: usize = 4;
 
 /// True if the last search of a fit ended at its limit of evaluations and was still gaining.
-pub fn may_gain_more(refit: &Refit) -> bool {
+fn may_gain_more(refit: &Refit) -> bool {
     refit.stop == Stop::Evaluations && refit.gained > NOT_SEPARATED
 }
 

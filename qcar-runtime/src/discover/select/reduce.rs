@@ -9,7 +9,7 @@ use super::assembly::{Hypothesis, Place, Placed};
 use super::coarse_check::CoarseCheck;
 use super::fidelity::Fidelity;
 use super::finite_explanation;
-use super::race::{FINE_BUDGET, MOST_REPETITIONS, may_catch_up, may_gain_more, through_windows};
+use super::race::{FINE_BUDGET, continued, through_windows};
 use super::set::Set;
 use super::tangent::Tangent;
 use crate::discover::answer::{Progress, Update};
@@ -40,7 +40,8 @@ pub struct Reduction<'a> {
     fitted: Evidence,
     /// The same with records in windows; `None` without records that can be cut.
     windows: Option<Fidelity>,
-    check: CoarseCheck,
+    /// Tells which smaller sets are not worth a fit to whole records.
+    check: Option<CoarseCheck>,
 }
 
 impl<'a> Reduction<'a> {
@@ -49,13 +50,14 @@ impl<'a> Reduction<'a> {
         let refit = &set.explanation.refit;
         let steady = evidence.minus(&refit.unsteady).with_step_limit();
         let fitted = Fidelity::of(&steady).fine;
+        let windows = Fidelity::in_windows(&steady);
         Self {
             set,
             base,
             evidence,
             tangent: Tangent::new(refit, &set.assembly, &fitted),
-            check: CoarseCheck::of(set, &steady),
-            windows: Fidelity::in_windows(&steady),
+            check: windows.as_ref().map(|windows| CoarseCheck::of(set, windows)),
+            windows,
             fitted,
             steady,
         }
@@ -69,7 +71,11 @@ impl<'a> Reduction<'a> {
         let hypothesis = assembly.hypothesis();
         let share = self.set.log_prior * others.len() as f64 / effects.len() as f64;
         let starts = self.starts_without(&effects[left_out], &hypothesis);
-        if starts.par_iter().all(|from| self.check.is_hopeless(&hypothesis, from)) {
+        let is_hopeless = |check: &CoarseCheck| {
+            let starts = starts.par_iter();
+            starts.all(|from| check.is_hopeless(&hypothesis, from, share))
+        };
+        if self.check.as_ref().is_some_and(is_hopeless) {
             return None;
         }
         let set = |refit: Refit| {
@@ -90,15 +96,9 @@ impl<'a> Reduction<'a> {
         best.into_iter().chain(in_windows).max_by(more_probable)
     }
 
-    /// The explanation by a fit, which is continued if it has not converged and may become as probable as the set.
-    fn explanation(&self, hypothesis: &Hypothesis<'_>, mut refit: Refit) -> Option<Explanation> {
-        for _ in 0..MOST_REPETITIONS {
-            if !may_gain_more(&refit) || !may_catch_up(&refit, self.set.explanation.refit.log_evidence) {
-                break;
-            }
-            let reached = hypothesis.place(&refit);
-            refit = hypothesis.fit(&reached, &self.steady, FINE_BUDGET).ok()?;
-        }
+    /// The explanation by a fit, which is continued if it has not converged.
+    fn explanation(&self, hypothesis: &Hypothesis<'_>, refit: Refit) -> Option<Explanation> {
+        let refit = continued(hypothesis, refit, &self.steady, |_| true)?;
         finite_explanation(hypothesis, refit, self.evidence)
     }
 
