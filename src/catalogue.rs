@@ -154,8 +154,19 @@ pub fn compiled_of_campaign(campaign: &Campaign, model: Option<&str>, wanted: Wa
 pub fn named_by(campaign: &Campaign, wanted: Option<&str>) -> Result<String, Failure> {
     if wanted.is_none() && models::find(&campaign.model).is_none() && !looks_like_a_path(&campaign.model) {
         let (place, found) = (Place::Name("model".into()), format!("`{}`", campaign.model));
-        let remedy = format!("choose among {}, or give the path of a file with --model", listed());
-        return Err(Problem::new(campaign.manifest(), place, found, "a shipped model", remedy).into());
+        let remedy = format!(
+            "choose among {}, or give a model file, such as `model = \"{}.axle\"`, relative to the folder of the campaign",
+            listed(),
+            campaign.model
+        );
+        return Err(Problem::new(
+            campaign.manifest(),
+            place,
+            found,
+            "a shipped model or a model file",
+            remedy,
+        )
+        .into());
     }
     Ok(match wanted {
         Some(model) => model.into(),

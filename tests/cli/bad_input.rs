@@ -141,6 +141,28 @@ fn numbers_and_names_of_flags_are_checked() {
     );
 }
 
+/// The message offers the model file beside the campaign, and the file is found there.
+#[test]
+fn a_campaign_names_a_shipped_model_or_a_file_beside_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let campaign = folder.path().join("campaign");
+    copy(Path::new("models/campaigns/axle_a_rig"), &campaign);
+    let families = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/families");
+    let model = fs::read_to_string("models/axles/axle_a.axle").unwrap();
+    let model = model.replace("../families", families.to_str().unwrap());
+    fs::write(campaign.join("base.axle"), model).unwrap();
+    let named = |model: &str| {
+        let manifest = campaign.join("campaign.toml");
+        let text = fs::read_to_string(&manifest).unwrap();
+        let own = text.lines().find(|line| line.starts_with("model = ")).expect("a model");
+        fs::write(&manifest, text.replace(own, &format!("model = {model:?}"))).unwrap();
+        qcar(&["check", campaign.to_str().unwrap()])
+    };
+    common::refused(&named("base"), &["campaign.toml", "`base`", "model = \"base.axle\""]);
+    let checked = named("base.axle");
+    assert_eq!(checked.status, 0, "{}", checked.stderr);
+}
+
 /// As `head` does after some lines.
 #[test]
 fn a_reader_that_has_read_enough_of_a_message_is_no_reason_to_panic() {
