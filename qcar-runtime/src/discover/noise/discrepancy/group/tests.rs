@@ -3,6 +3,7 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
+use super::super::factors::Factors;
 use super::*;
 
 fn sensor() -> Point {
@@ -95,6 +96,29 @@ fn discrepancy_is_estimated_from_its_own_draws() {
     let drawn = factor.times(&white);
     group.estimate(&drawn, |group, tau| Arc::new(group.factor(tau)));
     assert!((group.tau / truth - 1.0).abs() < 0.25, "{}, not {truth}", group.tau);
+}
+
+/// Estimates that share their factors have the same bits as single ones, whichever of two groups they are of.
+#[test]
+fn factors_that_are_kept_change_no_estimate() {
+    let places: Vec<f64> = (0..60).map(|k| 0.17 * f64::from(k)).collect();
+    let groups = [group(&places, 5.0), group(&places, 9.0)];
+    let known = Factors::default();
+    for draw in 0..4 {
+        let residual: Vec<f64> = (0..60)
+            .map(|k| 3.0 * ((0.3 + 0.1 * f64::from(draw)) * f64::from(k)).sin())
+            .collect();
+        for (place, group) in groups.iter().enumerate() {
+            let estimated = |factor: &dyn Fn(&Group, f64) -> Arc<Banded>| {
+                let mut group = group.clone();
+                group.estimate(&residual, factor);
+                (group.tau.to_bits(), group.log_determinant().to_bits())
+            };
+            let shared = estimated(&|group, tau| known.of(place, tau, || group.factor(tau)));
+            let single = estimated(&|group, tau| Arc::new(group.factor(tau)));
+            assert_eq!(shared, single, "draw {draw}, group {place}");
+        }
+    }
 }
 
 /// Three sensors that one force moves carry the evidence of one sensor.
