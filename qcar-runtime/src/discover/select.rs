@@ -28,8 +28,8 @@ mod answers;
 mod verdict;
 // The error of the integration of records.
 mod integration;
-// Sets that cannot become as probable as a known one.
-mod coarse_check;
+// Sets that short windows of the records exclude.
+mod window_check;
 // Sets with one effect less.
 mod reduce;
 // Replacement of effects by their rivals.

@@ -9,7 +9,7 @@ use super::held_out::predicts_better;
 use super::race::{Finalist, race};
 use super::reduce::Reduction;
 use super::screen::Entrant;
-use super::set::{Set, explained_share, is_missing, stated_share};
+use super::set::{Set, by_log_posterior, explained_share, is_missing, stated_share};
 use super::{Progress, Update, finite_explanation};
 use crate::discover::answer::{Finding, Learned};
 use crate::discover::candidate::Candidate;
@@ -51,7 +51,7 @@ fn without_needless_law(laws: Set, base: &Set, plain: &Set, evidence: &Evidence)
     }
     let reduction = Reduction::of(&laws, plain, evidence);
     let less = learned.into_par_iter().filter_map(|place| reduction.without(place));
-    let best = less.max_by(|a, b| a.log_posterior().total_cmp(&b.log_posterior()));
+    let best = less.max_by(by_log_posterior);
     match best {
         Some(less) if less.log_posterior() > laws.log_posterior() => less,
         _ => laws,
@@ -77,7 +77,7 @@ pub fn with_law(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Optio
     let in_windows = SearchStart::in_windows(set, &steady)
         .and_then(|start| most_probable_law(set, &laws, &start, evidence, progress));
     let both = law.into_iter().chain(in_windows);
-    both.max_by(|a, b| a.log_posterior().total_cmp(&b.log_posterior()))
+    both.max_by(by_log_posterior)
 }
 
 fn most_probable_law(
@@ -102,7 +102,7 @@ fn most_probable_law(
         let explanation = finite_explanation(&hypothesis, refit, evidence)?;
         Some(Set::new(set.assembly.with(candidate)?, explanation, prior))
     });
-    fitted.max_by(|a, b| a.log_posterior().total_cmp(&b.log_posterior()))
+    fitted.max_by(by_log_posterior)
 }
 
 /// The learned laws for the report.

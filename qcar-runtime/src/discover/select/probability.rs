@@ -7,7 +7,7 @@
 //! Bayesian Analysis 18, 2023): the mean of the posterior over data that are resampled with replacement, which includes
 //! the scatter of the data. Resampling changes the weights of the data; the fitted parameters stay.
 
-use super::set::{Set, leaves_more_than_noise};
+use super::set::{Set, by_log_posterior, leaves_more_than_noise};
 use crate::campaign::Role;
 use crate::discover::observe::Evidence;
 use crate::random::SplitMix;
@@ -18,9 +18,7 @@ const DRAWS: usize = 1000;
 /// Probability of each set; they sum to 1.
 pub fn probabilities(sets: &[&Set], evidence: &Evidence) -> Vec<f64> {
     let whole: Vec<f64> = sets.iter().map(|set| set.log_posterior()).collect();
-    let best = sets
-        .iter()
-        .max_by(|a, b| a.log_posterior().total_cmp(&b.log_posterior()));
+    let best = sets.iter().max_by(|a, b| by_log_posterior(a, b));
     let is_wrong = |best: &&&Set| leaves_more_than_noise(best, evidence) || best.has_inaccurate_sensors();
     if best.filter(is_wrong).is_none() {
         return posterior(&whole);

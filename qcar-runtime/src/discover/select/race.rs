@@ -297,8 +297,7 @@ fn best<'a>(
         let name = (own.effect.as_str(), own.at.as_str());
         let known = names.contains(&name);
         let behind = first - runner.evidence();
-        // A candidate will hardly make up more in the next search than it gained in the last one.
-        let improves = behind <= runner.gained().max(NOT_SEPARATED);
+        let improves = runner.refit.as_ref().is_some_and(|refit| may_catch_up(refit, first));
         let is_best_there = !late && !places.contains(&name.1);
         let is_of_beam = names.len() < BEAM;
         let wanted = own.nuisance

@@ -1,17 +1,15 @@
 //! Sets with one effect less.
 
-use std::cmp::Ordering;
-
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::assembly::{Hypothesis, Place, Placed};
-use super::coarse_check::CoarseCheck;
 use super::fidelity::Fidelity;
 use super::finite_explanation;
 use super::race::{FINE_BUDGET, continued, through_windows};
-use super::set::Set;
+use super::set::{Set, by_log_posterior};
 use super::tangent::Tangent;
+use super::window_check::WindowCheck;
 use crate::discover::answer::{Progress, Update};
 use crate::discover::observe::Evidence;
 use crate::discover::posterior::{Explanation, Refit};
@@ -40,8 +38,8 @@ pub struct Reduction<'a> {
     fitted: Evidence,
     /// The same with records in windows; `None` without records that can be cut.
     windows: Option<Fidelity>,
-    /// Tells which smaller sets are not worth a fit to whole records.
-    check: Option<CoarseCheck>,
+    /// Shows which smaller sets are not worth a fit to whole records.
+    check: Option<WindowCheck>,
 }
 
 impl<'a> Reduction<'a> {
@@ -56,7 +54,7 @@ impl<'a> Reduction<'a> {
             base,
             evidence,
             tangent: Tangent::new(refit, &set.assembly, &fitted),
-            check: windows.as_ref().map(|windows| CoarseCheck::of(set, windows)),
+            check: windows.as_ref().map(|windows| WindowCheck::of(set, windows)),
             windows,
             fitted,
             steady,
@@ -71,7 +69,7 @@ impl<'a> Reduction<'a> {
         let hypothesis = assembly.hypothesis();
         let share = self.set.log_prior * others.len() as f64 / effects.len() as f64;
         let starts = self.starts_without(&effects[left_out], &hypothesis);
-        let is_hopeless = |check: &CoarseCheck| {
+        let is_hopeless = |check: &WindowCheck| {
             let starts = starts.par_iter();
             starts.all(|from| check.is_hopeless(&hypothesis, from, share))
         };
@@ -84,7 +82,7 @@ impl<'a> Reduction<'a> {
         };
         let to_whole = |from: &Place| hypothesis.fit(from, &self.steady, FINE_BUDGET).ok();
         let from_whole = starts.par_iter().filter_map(to_whole).filter_map(set);
-        let best = from_whole.max_by(more_probable);
+        let best = from_whole.max_by(by_log_posterior);
         let suffices = |own: &Set| own.log_posterior() >= self.set.log_posterior();
         if best.as_ref().is_some_and(suffices) {
             return best;
@@ -93,7 +91,7 @@ impl<'a> Reduction<'a> {
         let windows = self.windows.as_ref().zip(starts.first());
         let in_windows = windows.and_then(|(windows, from)| through_windows(&hypothesis, from, windows));
         let in_windows = in_windows.and_then(set);
-        best.into_iter().chain(in_windows).max_by(more_probable)
+        best.into_iter().chain(in_windows).max_by(by_log_posterior)
     }
 
     /// The explanation by a fit, which is continued if it has not converged.
@@ -124,10 +122,6 @@ impl<'a> Reduction<'a> {
         let changed = changed.filter(|changed| left(changed) < left(&here));
         [here].into_iter().chain(changed).collect()
     }
-}
-
-fn more_probable(a: &Set, b: &Set) -> Ordering {
-    a.log_posterior().total_cmp(&b.log_posterior())
 }
 
 /// Changes of all unknowns if some of them, by column of the Jacobian, change by these amounts and the others cancel as

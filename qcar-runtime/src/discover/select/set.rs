@@ -1,6 +1,7 @@
 //! A set of effects with its fit: its probability, its names and its remaining residual.
 
 use std::borrow::Cow;
+use std::cmp::Ordering;
 use std::sync::{Arc, Mutex};
 
 use super::assembly::{Assembly, Placed};
@@ -253,16 +254,20 @@ pub fn keep_best(own: Set, sets: &mut Vec<Set>) {
     }
 }
 
+/// The order of sets by their log posterior probability.
+pub fn by_log_posterior(a: &Set, b: &Set) -> Ordering {
+    a.log_posterior().total_cmp(&b.log_posterior())
+}
+
 /// The most probable of the sets at these positions; `None` if there are none.
 pub fn most_probable(sets: &[Set], places: impl IntoIterator<Item = usize>) -> Option<usize> {
-    let order = |a: &usize, b: &usize| sets[*a].log_posterior().total_cmp(&sets[*b].log_posterior());
-    places.into_iter().max_by(order)
+    places.into_iter().max_by(|&a, &b| by_log_posterior(&sets[a], &sets[b]))
 }
 
 /// These positions, that of the most probable set first.
 pub fn most_probable_first(sets: &[Set], places: impl IntoIterator<Item = usize>) -> Vec<usize> {
     let mut places: Vec<usize> = places.into_iter().collect();
-    places.sort_by(|a, b| sets[*b].log_posterior().total_cmp(&sets[*a].log_posterior()));
+    places.sort_by(|&a, &b| by_log_posterior(&sets[b], &sets[a]));
     places
 }
 

@@ -2,7 +2,7 @@
 
 use super::answers::{Answer, answers, credible};
 use super::assembly::Placed;
-use super::set::{Set, best_base, explained_share, is_missing, is_part, stated_share};
+use super::set::{Set, best_base, by_log_posterior, explained_share, is_missing, is_part, stated_share};
 use crate::discover::answer::{Discovery, Finding, Probable, Verdict};
 use crate::discover::numbers::GREATER_PART;
 use crate::discover::observe::Evidence;
@@ -117,7 +117,7 @@ fn candidates(sets: &[Set], answers: &[Answer], before: &Set, evidence: &Evidenc
         let with = sets.iter().filter(|set| set.names().contains(&name));
         let order = |a: &&Set, b: &&Set| {
             let fewer = b.names().len().cmp(&a.names().len());
-            fewer.then(a.log_posterior().total_cmp(&b.log_posterior()))
+            fewer.then(by_log_posterior(a, b))
         };
         let best = with.max_by(order)?;
         let holds = |own: &&Answer| !own.dismissed && sets[own.set].names().contains(&name);

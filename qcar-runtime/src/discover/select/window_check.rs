@@ -11,8 +11,8 @@ use crate::discover::observe::Evidence;
 use crate::discover::posterior::Refit;
 use crate::mean::rms_or_nan;
 
-/// A set on the coarse data in windows.
-pub struct CoarseCheck {
+/// A set, fitted to the coarse data in windows.
+pub struct WindowCheck {
     coarse: Evidence,
     /// The fit of the set; `None` if it fails.
     known: Option<Fitted>,
@@ -27,8 +27,8 @@ struct Fitted {
     excess: f64,
 }
 
-impl CoarseCheck {
-    /// The set on the coarse data; `windows` is evidence without non-steady parts, in windows.
+impl WindowCheck {
+    /// Fits the set; `windows` is evidence without non-steady parts, in windows.
     pub fn of(set: &Set, windows: &Fidelity) -> Self {
         let coarse = windows.coarse.clone();
         let hypothesis = set.assembly.hypothesis();
