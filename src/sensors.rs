@@ -16,7 +16,7 @@ pub fn unknown(about: &About, campaign: &Campaign) -> Vec<String> {
     let say = |own: &Channel| {
         let (location, quantity, axis) = (&own.location, own.quantity.name(), own.axis.name());
         let (channel, model) = (&own.name, &about.name);
-        let remedy = match nearest_place(about, &Point::new(location, own.axis, own.quantity)) {
+        let remedy = match nearest_place(about, &Point::new(location, own.axis.clone(), own.quantity)) {
             Some(nearest) => format!("did you mean `{nearest}`?"),
             None => format!("if it should, add `output {location}.{quantity};` to the model"),
         };
@@ -62,7 +62,7 @@ fn in_other_unit<'a>(about: &'a About, own: &Channel) -> Option<&'a Output> {
 
 /// The sensor as the mean of its place, and at each end of it.
 fn points(own: &Channel) -> impl Iterator<Item = Point> {
-    let mean = Point::new(&own.location, own.axis, own.quantity);
+    let mean = Point::new(&own.location, own.axis.clone(), own.quantity);
     let ends = [Side::Front, Side::Rear].map(|end| mean.on(end));
     std::iter::once(mean).chain(ends)
 }

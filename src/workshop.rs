@@ -185,7 +185,7 @@ impl Bench {
                 },
             }];
         };
-        let axis = if signal.axis == "x" { Axis::X } else { Axis::Z };
+        let axis = Axis::new(signal.axis.clone());
         let mut axes = vec![(format!("along_{}", signal.axis), Some(axis))];
         if patched.place == signal.location {
             axes.push(("along_every_axis".into(), None));

@@ -12,6 +12,7 @@ use nalgebra::Complex;
 
 use crate::campaign::{Axis, Channel, History, Quantity, Recording, Side, Test};
 use crate::error::{InputError, Place, Problem};
+use crate::model::{self, About, Link, SignalKind};
 use crate::spectrum::{self, Segments, Trend, Window};
 
 // An estimate at one frequency.
@@ -52,6 +53,18 @@ impl Point {
             axis,
             quantity,
             side,
+        }
+    }
+
+    /// The kind of the model's signal here: a displacement is the stretch of a link of this name, or a position.
+    pub fn kind(&self, about: &About) -> SignalKind {
+        let is_it = |link: &Link| link.name == self.location && link.axis == self.axis.name();
+        match self.quantity {
+            Quantity::Force => SignalKind::Force,
+            Quantity::Displacement if about.links.iter().any(is_it) => SignalKind::Stretch,
+            Quantity::Displacement => SignalKind::Motion(model::Quantity::Position),
+            Quantity::Velocity => SignalKind::Motion(model::Quantity::Velocity),
+            Quantity::Acceleration => SignalKind::Motion(model::Quantity::Acceleration),
         }
     }
 
@@ -172,7 +185,7 @@ pub struct Transmissibility {
 pub fn points(history: &History) -> Vec<Point> {
     let mut points = Vec::new();
     for (channel, _) in &history.signals {
-        let point = Point::new(&channel.location, channel.axis, channel.quantity);
+        let point = Point::new(&channel.location, channel.axis.clone(), channel.quantity);
         if !points.contains(&point) {
             points.push(point);
         }

@@ -161,7 +161,7 @@ fn a_sound_campaign_is_read_as_it_stands() {
     assert_eq!(campaign.parameters[1].range, None);
     let body = campaign.channel("body_centre_z").unwrap();
     assert_eq!(
-        (body.side, body.axis, body.quantity),
+        (body.side, body.axis.clone(), body.quantity),
         (Side::Centre, Axis::Z, Quantity::Acceleration)
     );
     let Test::Sweep(sweep) = campaign.runs[0].test else {

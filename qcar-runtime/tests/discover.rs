@@ -178,7 +178,7 @@ fn a_gain_beyond_calibration_is_told_when_suspected() {
         |location, _| if location == "wheel" { 1.04 } else { 1.0 },
     );
     let (base, _) = fitted(&model, &wrong);
-    let suspected = Nuisance::of(&wrong).with_suspect("wheel", Some(Axis::Z), Form::Gain, 1.0);
+    let suspected = Nuisance::of(&wrong).with_suspect("wheel", Some(&Axis::Z), Form::Gain, 1.0);
     let suspected = suspected.expect("the wheel has a sensor");
     let refit = refit_with(&model, &base.values, &base.free, &wrong, suspected, 60).expect("sensors are there");
     let gain = refit.coefficients[refit.nuisance.count() - 1].exp();

@@ -199,6 +199,31 @@ fn a_linear_model_is_fitted_to_the_samples_of_time_histories_alone() {
     }
 }
 
+/// A direction may have any name, and so may the axis of a sensor.
+#[test]
+fn a_sensor_measures_along_any_direction_of_the_model() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().to_str().unwrap();
+    moving_campaign(folder.path());
+    let model = succeeds(&["show", "one_mass"]).replace("direction z", "direction lateral");
+    fs::write(folder.path().join("lateral.axle"), model).unwrap();
+    let manifest = folder.path().join("campaign.toml");
+    let text = fs::read_to_string(&manifest).unwrap();
+    let (model, along) = ("model = \"one_mass\"", "axis = \"z\"");
+    let text = text.replace(model, "model = \"lateral.axle\"");
+    fs::write(&manifest, text.replace(along, "axis = \"lateral\"")).unwrap();
+    let fit: Value = serde_json::from_str(&succeeds(&["fit", path, "--starts", "1", "--format", "json"])).unwrap();
+    for (name, truth, _) in TRUTH {
+        let value = fit["parameters"][name]["value"].as_f64().unwrap();
+        assert!((value / truth - 1.0).abs() < 1e-3, "{name}: {fit}");
+    }
+    // The same sensors along a direction that the model lacks are told.
+    fs::write(&manifest, text.replace(along, "axis = \"lateral_2\"")).unwrap();
+    let checked = qcar(&["check", path]);
+    let told = "no displacement of `body` along lateral_2";
+    assert!(checked.stdout.contains(told), "{}", checked.stdout);
+}
+
 /// Every verb that fits uses the values of `qcar fit`.
 #[test]
 fn score_compare_and_study_fit_the_samples_of_time_histories_alone() {

@@ -1,5 +1,6 @@
 //! Contents of a campaign. `docs/campaign-format.md` describes the format.
 
+use std::borrow::Cow;
 use std::path::PathBuf;
 
 use super::reading::RunData;
@@ -111,7 +112,7 @@ pub struct Channel {
     pub location: String,
     /// Side of the vehicle.
     pub side: Side,
-    /// Axis.
+    /// Direction of the model along which it measures.
     pub axis: Axis,
     /// Measured quantity; values are in its SI unit.
     pub quantity: Quantity,
@@ -171,14 +172,9 @@ pub enum Side {
     Rear,
 }
 
-/// A direction of the vehicle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Axis {
-    /// Up.
-    Z,
-    /// Forward.
-    X,
-}
+/// A direction of the model, by its name there.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Axis(Cow<'static, str>);
 
 /// What a sensor measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -397,14 +393,19 @@ impl Side {
 }
 
 impl Axis {
-    pub(super) const NAMES: &[(&str, Axis)] = &[(Axis::Z.name(), Axis::Z), (Axis::X.name(), Axis::X)];
+    /// Up.
+    pub const Z: Axis = Axis(Cow::Borrowed("z"));
+    /// Forward.
+    pub const X: Axis = Axis(Cow::Borrowed("x"));
+
+    /// The direction of this name.
+    pub fn new(name: impl Into<Cow<'static, str>>) -> Self {
+        Axis(name.into())
+    }
 
     /// Name in models and campaigns.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Axis::Z => "z",
-            Axis::X => "x",
-        }
+    pub fn name(&self) -> &str {
+        &self.0
     }
 }
 

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use super::contents::Axis;
 use super::unit::{Declared, examples};
 use crate::bounded;
 use crate::error::{InputError, Place, Problem};
@@ -239,6 +240,24 @@ impl<'a> Section<'a> {
             );
         }
         choice
+    }
+
+    /// The direction `axis`; a campaign may be compared with several models, so it need not be one of them all.
+    pub fn axis(&self) -> Option<Axis> {
+        let name = self.text("axis")?;
+        let is_name = name.starts_with(|c: char| c.is_ascii_lowercase())
+            && name
+                .chars()
+                .all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
+        if !is_name {
+            self.wrong(
+                "axis",
+                format!("\"{name}\""),
+                "a direction of the model, such as \"z\" or \"x\"",
+                "write the name of the direction as the model does, in lower case",
+            );
+        }
+        is_name.then(|| Axis::new(name))
     }
 
     /// The sections of `[[key]]`, in the order of the file; empty if it is missing.

@@ -2,9 +2,9 @@
 
 use super::channels::{Channels, across_links, is_excitation};
 use super::observation::{Difference, Level, Observation, Pair};
-use crate::campaign::{Campaign, Channel as Sensor, History, Quantity, Run, Side, Test};
+use crate::campaign::{Campaign, Channel as Sensor, History, Run, Side, Test};
 use crate::error::{InputError, Place, Problem};
-use crate::model::{self, About, Channel, Signal, SignalKind};
+use crate::model::{About, Channel, Signal};
 use crate::progress::{self, OnProgress};
 use crate::transmissibility::{Options, Point, Related, Transmissibility, points};
 use nalgebra::Complex;
@@ -220,22 +220,10 @@ fn unknown_channel(campaign: &Campaign, name: &str, measured: &[Signal]) -> Prob
 
 /// The signal of the model at a measured point.
 fn signal(about: &About, point: &Point) -> Signal {
-    let axis = point.axis.name();
-    let link = about
-        .links
-        .iter()
-        .any(|link| link.name == point.location.as_str() && link.axis == axis);
-    let kind = match point.quantity {
-        Quantity::Displacement if link => SignalKind::Stretch,
-        Quantity::Acceleration => SignalKind::Motion(model::Quantity::Acceleration),
-        Quantity::Velocity => SignalKind::Motion(model::Quantity::Velocity),
-        Quantity::Displacement => SignalKind::Motion(model::Quantity::Position),
-        Quantity::Force => SignalKind::Force,
-    };
     Signal {
         location: point.location.clone().into(),
-        axis: axis.into(),
-        kind,
+        axis: point.axis.name().to_owned().into(),
+        kind: point.kind(about),
     }
 }
 

@@ -18,7 +18,7 @@ pub(crate) struct Site {
     /// The link, mass or sensor location.
     pub at: String,
     /// Axis of the sensor, if the signal of a sensor instead of the model would be wrong; `None` for a link or mass.
-    pub sensor: Option<&'static str>,
+    pub sensor: Option<String>,
 }
 
 /// A place and the dynamic stiffness that would have to be added there.
@@ -38,7 +38,7 @@ pub(crate) struct PlaceStiffness {
 impl Site {
     /// As text.
     pub fn name(&self) -> String {
-        match self.sensor {
+        match &self.sensor {
             Some(axis) => format!("the sensor of {} along {axis}", self.at),
             None => self.at.clone(),
         }
@@ -125,7 +125,7 @@ fn site(model: &Model, place: &Place) -> Site {
     match place {
         Place::Sensor(point) => Site {
             at: point.location.clone(),
-            sensor: Some(point.axis.name()),
+            sensor: Some(point.axis.name().into()),
         },
         Place::Parameter(parameter) => Site {
             at: owner(model, *parameter),

@@ -20,11 +20,11 @@ pub(super) fn words(name: &str) -> Vec<String> {
 }
 
 /// The meaning of the first word that has one in a list of words and meanings.
-pub(super) fn meaning<T: Copy>(words: &[String], list: &[(&[&str], T)]) -> Option<T> {
+pub(super) fn meaning<T: Clone>(words: &[String], list: &[(&[&str], T)]) -> Option<T> {
     let of = |word: &String| {
         list.iter()
             .find(|(known, _)| known.contains(&word.as_str()))
-            .map(|(_, own)| *own)
+            .map(|(_, own)| own.clone())
     };
     words.iter().find_map(of)
 }

@@ -33,7 +33,7 @@ pub struct Difference {
     /// The mass.
     pub mass: String,
     /// Axis: `z` or `x`.
-    pub axis: &'static str,
+    pub axis: String,
     /// Largest measured acceleration during the impact, m/s².
     pub measured_peak: f64,
     /// Largest simulated acceleration, m/s².
@@ -105,7 +105,7 @@ fn not_simulated(about: &About, cleat: &Cleat) -> Vec<String> {
             let output = format!("add `output {mass}.acceleration;` to its direction {axis}");
             return format!("{left_out} its acceleration is not an output of model `{model}`; {output}");
         }
-        let remedy = match nearest_place(about, &Point::new(mass, sensor.axis, sensor.quantity)) {
+        let remedy = match nearest_place(about, &Point::new(mass, sensor.axis.clone(), sensor.quantity)) {
             Some(nearest) => format!("did you mean `{nearest}`?"),
             None => "name the location as the model does".into(),
         };
@@ -177,7 +177,7 @@ fn differences(about: &About, named: &RoleNames, cleat: &Cleat, ride: &Ride) -> 
             run: cleat.run.name.clone(),
             role: if cleat.run.role == Role::Fit { "fit" } else { "held_out" },
             mass: pair.mass.into(),
-            axis: pair.axis.name(),
+            axis: pair.axis.name().into(),
             measured_peak: errors.peaks[0],
             simulated_peak: errors.peaks[1],
             peak_error: errors.peak(),
@@ -223,7 +223,7 @@ pub(crate) fn pairs<'a>(about: &About, cleat: &'a Cleat, ride: &'a Ride) -> Vec<
     let both = accelerometers(cleat).filter_map(|(sensor, measured)| {
         Some(Pair {
             mass: &sensor.location,
-            axis: sensor.axis,
+            axis: sensor.axis.clone(),
             measured,
             simulated: &ride.outputs[output(about, sensor)?],
         })

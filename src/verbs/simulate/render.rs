@@ -148,7 +148,7 @@ fn text(of: &Compared) -> String {
             percent(d.after_shake_error),
         ];
         let unit = units::name(ACCELERATION).into();
-        let place = [d.run.clone(), d.role.into(), d.mass.clone(), d.axis.into(), unit];
+        let place = [d.run.clone(), d.role.into(), d.mass.clone(), d.axis.clone(), unit];
         runs.row(place.into_iter().chain(numbers).collect());
     }
     let mut sizes = Table::new([

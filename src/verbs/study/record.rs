@@ -25,7 +25,7 @@ pub struct Record {
 struct Sensor {
     name: String,
     location: String,
-    axis: &'static str,
+    axis: String,
     quantity: &'static str,
 }
 
@@ -78,7 +78,7 @@ fn sensors(of: &Campaign) -> Vec<Sensor> {
     let sensor = |channel: &qcar_runtime::campaign::Channel| Sensor {
         name: channel.name.clone(),
         location: channel.location.clone(),
-        axis: channel.axis.name(),
+        axis: channel.axis.name().into(),
         quantity: channel.quantity.name(),
     };
     of.channels.iter().map(sensor).collect()

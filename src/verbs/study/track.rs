@@ -40,7 +40,7 @@ struct Run {
 #[derive(Serialize)]
 struct Trace {
     mass: String,
-    axis: &'static str,
+    axis: String,
     measured: Vec<f64>,
     before: Vec<f64>,
     after: Option<Vec<f64>>,
@@ -105,7 +105,7 @@ fn run(models: &Models, track: &gather::Track, place: usize, cleat: &Cleat) -> O
     let (locked, vertical) = (of(models.best, &track.locked)?, of(models.best, &track.vertical)?);
     let traces = before.traces.iter().map(|(key, (measured, simulated))| Trace {
         mass: key.0.clone(),
-        axis: key.1,
+        axis: key.1.clone(),
         measured: measured.clone(),
         before: simulated.clone(),
         after: after.as_ref().map(|after| after.simulated(key)),
@@ -126,7 +126,7 @@ fn run(models: &Models, track: &gather::Track, place: usize, cleat: &Cleat) -> O
 }
 
 /// A mass and an axis.
-type Key = (String, &'static str);
+type Key = (String, String);
 
 /// The records of a run over the shown time.
 struct Aligned {
@@ -165,7 +165,7 @@ impl Aligned {
 }
 
 fn key(pair: &Pair) -> Key {
-    (pair.mass.to_string(), pair.axis.name())
+    (pair.mass.to_string(), pair.axis.name().to_string())
 }
 
 /// A sample; NaN beyond the ends.

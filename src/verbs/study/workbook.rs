@@ -78,7 +78,7 @@ fn row(model: &str, of: &Difference) -> Vec<Cell> {
         of.run.as_str().into(),
         of.role.into(),
         of.mass.as_str().into(),
-        of.axis.into(),
+        of.axis.as_str().into(),
         shown(of.measured_peak),
         shown(of.simulated_peak),
         (100.0 * of.peak_error).into(),

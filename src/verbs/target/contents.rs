@@ -109,7 +109,7 @@ fn beside(subject: &Subject, cleat: &Cleat, ride: &Trace) -> Vec<Option<Vec<f64>
             let (sensor, measured) = (*sensor)?;
             Some(Pair {
                 mass: &signal.location,
-                axis: sensor.axis,
+                axis: sensor.axis.clone(),
                 measured,
                 simulated,
             })

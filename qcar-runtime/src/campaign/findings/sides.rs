@@ -47,7 +47,7 @@ pub(super) fn of_sides(run: &Run, history: &History) -> Vec<Finding> {
 
 fn pairs(history: &History) -> Vec<Pair<'_>> {
     let of = |side: Side| history.signals.iter().filter(move |(channel, _)| channel.side == side);
-    let place = |channel: &Channel| (channel.location.clone(), channel.axis, channel.quantity);
+    let place = |channel: &Channel| (channel.location.clone(), channel.axis.clone(), channel.quantity);
     let pair = |left: &'_ (Channel, Vec<f64>)| {
         let right = of(Side::Right).find(|(right, _)| place(right) == place(&left.0))?;
         let left = history.signals.iter().find(|(own, _)| own.name == left.0.name)?;
@@ -75,7 +75,7 @@ fn against(pair: &Pair) -> String {
 }
 
 fn are_swapped(a: &Pair, b: &Pair) -> bool {
-    let same_kind = |a: &Channel, b: &Channel| (a.axis, a.quantity) == (b.axis, b.quantity);
+    let same_kind = |a: &Channel, b: &Channel| (&a.axis, a.quantity) == (&b.axis, b.quantity);
     let crossed = |a: &Pair, b: &Pair| correlation(a.left.1, b.right.1).abs() > a.correlation.abs() + CLEARLY;
     same_kind(a.left.0, b.left.0) && crossed(a, b) && crossed(b, a)
 }

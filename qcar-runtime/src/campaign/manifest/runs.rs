@@ -156,7 +156,7 @@ fn dynamic_bounce(section: &Section<'_>) -> Option<Test> {
 fn dynamometer(section: &Section<'_>) -> Option<Test> {
     let (link, amplitude) = (section.text("link"), section.positive("amplitude", "m"));
     let axis = match section.has("axis") {
-        true => section.choice("axis", Axis::NAMES),
+        true => section.axis(),
         false => Some(Axis::Z),
     };
     let uncertainty = section.has("uncertainty").then(|| section.positive("uncertainty", "N"));

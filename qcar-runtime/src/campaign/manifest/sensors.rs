@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::super::contents::{Axis, Channel, ChannelMapping, Quantity, Side};
+use super::super::contents::{Channel, ChannelMapping, Quantity, Side};
 use super::super::fields::{Document, Section};
 use super::super::mapping;
 use super::each;
@@ -72,7 +72,7 @@ fn shared_sensors(file: &Path, top: &Section<'_>) -> Option<Vec<Sensor>> {
 
 fn sensor(section: &Section<'_>) -> Option<Sensor> {
     let (name, location) = (section.text("name"), section.text("location"));
-    let (side, axis) = (section.choice("side", Side::NAMES), section.choice("axis", Axis::NAMES));
+    let (side, axis) = (section.choice("side", Side::NAMES), section.axis());
     let quantity = section.choice("quantity", Quantity::NAMES);
     if name.as_deref() == Some("time") {
         section.wrong(

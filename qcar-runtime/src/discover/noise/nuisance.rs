@@ -107,8 +107,8 @@ impl Nuisance {
 
     /// Adds a suspected error that the sensors of a location share, along one axis or all axes. `sigma` is its prior
     /// standard deviation. `None` if the evidence has no such sensor, or if all axes are wanted and there is only one.
-    pub fn with_suspect(mut self, location: &str, axis: Option<Axis>, form: Form, sigma: f64) -> Option<Self> {
-        let is_it = |sensor: &Point| sensor.location == location && axis.is_none_or(|axis| sensor.axis == axis);
+    pub fn with_suspect(mut self, location: &str, axis: Option<&Axis>, form: Form, sigma: f64) -> Option<Self> {
+        let is_it = |sensor: &Point| sensor.location == location && axis.is_none_or(|axis| sensor.axis == *axis);
         let sensors: Vec<usize> = (0..self.sensors.len()).filter(|&k| is_it(&self.sensors[k])).collect();
         let first = &self.sensors[*sensors.first()?];
         if axis.is_none() && sensors.iter().all(|&k| self.sensors[k].axis == first.axis) {

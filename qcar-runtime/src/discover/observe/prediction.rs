@@ -152,7 +152,7 @@ pub enum PredictError {
         /// Name of the link.
         link: String,
         /// Axis of the link.
-        axis: &'static str,
+        axis: String,
         /// File of the run.
         run: String,
     },

@@ -1,7 +1,7 @@
 //! Sensors as signals of a model.
 
 use crate::campaign::{History, Quantity, Side};
-use crate::model::{About, Signal, SignalKind};
+use crate::model::{About, Signal};
 use crate::response::signal::output_of;
 use crate::spelling::nearest;
 use crate::transmissibility::{Point, points};
@@ -12,21 +12,10 @@ use crate::transmissibility::{Point, points};
 /// such as `sf_front`, if the model has one. Any other sensor is at the point with the suffix `_sensor`, such as
 /// `sf_sensor`, if the model has one. Otherwise it is at the place itself.
 pub fn signal_of(about: &About, point: &Point) -> Signal {
-    let link = about
-        .links
-        .iter()
-        .any(|link| link.name == point.location && link.axis == point.axis.name());
-    let kind = match point.quantity {
-        Quantity::Force => SignalKind::Force,
-        Quantity::Displacement if link => SignalKind::Stretch,
-        Quantity::Displacement => SignalKind::Motion(crate::model::Quantity::Position),
-        Quantity::Velocity => SignalKind::Motion(crate::model::Quantity::Velocity),
-        Quantity::Acceleration => SignalKind::Motion(crate::model::Quantity::Acceleration),
-    };
     Signal {
         location: location_of(about, point).into(),
-        axis: point.axis.name().into(),
-        kind,
+        axis: point.axis.name().to_owned().into(),
+        kind: point.kind(about),
     }
 }
 

@@ -256,7 +256,7 @@ fn with_suspected_sensor(nuisance: &Nuisance, candidate: &Candidate) -> Option<N
     };
     nuisance
         .clone()
-        .with_suspect(location, *axis, *form, width / 12.0_f64.sqrt())
+        .with_suspect(location, axis.as_ref(), *form, width / 12.0_f64.sqrt())
 }
 
 impl<'a> Hypothesis<'a> {

@@ -45,7 +45,7 @@ pub struct Key {
 impl Key {
     /// True for a group of the same axis, kind and type of run, including the group itself.
     pub fn has_same_axis_and_kind(&self, other: &Key) -> bool {
-        (self.sensor.axis, self.kind, self.run) == (other.sensor.axis, other.kind, other.run)
+        (&self.sensor.axis, self.kind, self.run) == (&other.sensor.axis, other.kind, other.run)
     }
 }
 

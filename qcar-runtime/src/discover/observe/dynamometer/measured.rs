@@ -26,7 +26,7 @@ impl Evidence {
         let of = |column: &[f64]| rows.iter().map(|&row| column[row]).collect::<Vec<f64>>();
         self.series.push(Series {
             run: self.runs.len(),
-            sensor: Point::new(&format!("{}_on_dynamometer", test.link), test.axis, Quantity::Force),
+            sensor: Point::new(&format!("{}_on_dynamometer", test.link), test.axis.clone(), Quantity::Force),
             kind: Kind::Speed,
             at: of(&table.velocity),
             value: of(&table.force).into_iter().map(Complex::from).collect(),
@@ -43,7 +43,7 @@ impl Evidence {
                 .fold(0.0, |most: f64, speed| most.max(speed.abs())),
             stimulus: Stimulus::Dynamometer {
                 link: test.link.clone(),
-                axis: test.axis,
+                axis: test.axis.clone(),
                 amplitude: test.amplitude,
             },
         });

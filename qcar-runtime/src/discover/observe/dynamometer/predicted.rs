@@ -39,11 +39,11 @@ pub fn forces(
     let Stimulus::Dynamometer { link, axis, amplitude } = &of_run.stimulus else {
         return Ok(Vec::new());
     };
-    let alone = place(model.about(), link, *axis).and_then(|place| model.alone(place));
+    let alone = place(model.about(), link, axis).and_then(|place| model.alone(place));
     let alone = alone.ok_or_else(|| PredictError::NoLink {
         model: model.about().name.to_string(),
         link: link.clone(),
-        axis: axis.name(),
+        axis: axis.name().into(),
         run: of_run.name.clone(),
     })?;
     let mut bench = Bench::new(alone, values, free);
@@ -67,7 +67,7 @@ pub fn forces(
         .collect())
 }
 
-fn place(about: &About, link: &str, axis: Axis) -> Option<usize> {
+fn place(about: &About, link: &str, axis: &Axis) -> Option<usize> {
     let is_it = |own: &crate::model::Link| own.name == link && own.axis == axis.name();
     about.links.iter().position(is_it)
 }

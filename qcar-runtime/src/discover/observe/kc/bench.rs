@@ -76,7 +76,7 @@ pub(super) struct Slope {
 
 impl Bench {
     /// The positions in a model; `None` if the model lacks the parts that the rig moves along this axis.
-    pub fn new(about: &About, on: &OnRig, axis: Axis) -> Option<Self> {
+    pub fn new(about: &About, on: &OnRig, axis: &Axis) -> Option<Self> {
         let along = |kind| {
             let states = about.states.iter().enumerate();
             states.filter(move |(_, state)| state.kind == kind && state.axis == axis.name())
@@ -106,7 +106,7 @@ impl Bench {
             wheel_speed,
             held_speed: called(StateKind::Velocity, &on.body)?,
             on: on.clone(),
-            axis,
+            axis: axis.clone(),
             ground: ground.collect(),
             slopes: slopes(about, &free, |row| free.iter().position(|b| b.row() == row)),
             of_wheel: slopes(about, &free, |row| (row == wheel_speed).then_some(0)),

@@ -34,8 +34,8 @@ pub fn travel(
     let all = evidence.series.iter().enumerate();
     let series: Vec<(usize, &Series)> = all.filter(|(_, series)| series.run == run).collect();
     let (on, axis, course) = match &of_run.stimulus {
-        Stimulus::Travel { on, axis, ends } => (on, *axis, Course::cycle(*ends, &series[0].1.at)),
-        Stimulus::Sine { on, axis, frequency } => (on, *axis, Course::sine(of_run.level, *frequency)),
+        Stimulus::Travel { on, axis, ends } => (on, axis, Course::cycle(*ends, &series[0].1.at)),
+        Stimulus::Sine { on, axis, frequency } => (on, axis, Course::sine(of_run.level, *frequency)),
         _ => return Ok(Vec::new()),
     };
     let not_on_rig = || PredictError::no_input(model.about(), of_run, &on.wheel);

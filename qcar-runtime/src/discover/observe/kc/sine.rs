@@ -32,7 +32,7 @@ impl Evidence {
         (amplitude, peak_velocity): (f64, f64),
     ) -> Result<(), InputError> {
         let curve = campaign.dynamic_curve(run)?;
-        let Some(on) = self.on_rig(campaign, about, run, Axis::Z) else {
+        let Some(on) = self.on_rig(campaign, about, run, &Axis::Z) else {
             return Ok(());
         };
         let frequency = peak_velocity / amplitude / TAU;

@@ -44,7 +44,7 @@ impl Evidence {
         axis: Axis,
     ) -> Result<(), InputError> {
         let curve = campaign.curve(run)?;
-        let Some(on) = self.on_rig(campaign, about, run, axis) else {
+        let Some(on) = self.on_rig(campaign, about, run, &axis) else {
             return Ok(());
         };
         let damping = (axis == Axis::Z).then(|| damping(campaign)).transpose()?.flatten();
@@ -54,9 +54,9 @@ impl Evidence {
             return Ok(());
         };
         let place = self.runs.len();
-        self.series.push(cycle.series(place, axis, Kind::Travel, 0.0));
+        self.series.push(cycle.series(place, &axis, Kind::Travel, 0.0));
         self.series
-            .extend(damping.map(|c| cycle.series(place, axis, Kind::Width, c.abs() * RIG)));
+            .extend(damping.map(|c| cycle.series(place, &axis, Kind::Width, c.abs() * RIG)));
         self.runs.push(Run {
             name: run.name.clone(),
             role: run.role,
@@ -76,7 +76,7 @@ impl Evidence {
         campaign: &Campaign,
         about: &About,
         run: &crate::campaign::Run,
-        axis: Axis,
+        axis: &Axis,
     ) -> Option<OnRig> {
         let moves = |location: &str| state(about, StateKind::Velocity, location, axis.name()).is_some();
         let roles = Roles::of(about, &campaign.roles).and_then(|roles| roles.on_rig());
@@ -155,7 +155,7 @@ impl Loop {
 
     /// Series of the mean or of half the width. All travels share the error `common` (N). It is scaled so that all
     /// values together are as uncertain as a single one with this error.
-    fn series(&self, run: usize, axis: Axis, kind: Kind, common: f64) -> Series {
+    fn series(&self, run: usize, axis: &Axis, kind: Kind, common: f64) -> Series {
         let sign = if kind == Kind::Width { -1.0 } else { 1.0 };
         let floor = (FLOOR * self.most).hypot(common * (self.at.len() as f64).sqrt());
         let least = (LEAST_NOISE * self.most).hypot(common * (self.at.len() as f64).sqrt());
@@ -163,7 +163,7 @@ impl Loop {
         let noise = |[there, back]: &[(f64, f64); 2]| there.1.hypot(back.1) / 2.0;
         Series {
             run,
-            sensor: sensor(axis),
+            sensor: sensor(axis.clone()),
             kind,
             at: self.at.clone(),
             value: self.forces.iter().map(value).collect(),

@@ -113,7 +113,7 @@ impl Evidence {
 /// # Errors
 /// Fails if the sensors measure none or several of these motions.
 fn only_pad(about: &About, pads: &[Point], file: &Path) -> Result<Point, InputError> {
-    let place = |pad: &Point| (pad.location.clone(), pad.axis);
+    let place = |pad: &Point| (pad.location.clone(), pad.axis.clone());
     match pads {
         [reference, others @ ..] if others.iter().all(|pad| place(pad) == place(reference)) => Ok(reference.clone()),
         _ => Err(not_one_pad(about, pads, file.to_path_buf()).into()),

@@ -44,7 +44,7 @@ pub fn measurements(refit: &Refit, model: &dyn Model, fitted: &Evidence) -> Resu
     }
     for (run, own) in fitted.runs.iter().enumerate() {
         if let Stimulus::Dynamometer { link, axis, .. } = &own.stimulus
-            && has_inner_states(model, link, *axis)
+            && has_inner_states(model, link, axis)
         {
             let what = format!("{} once more with a tenth of its stroke", own.name);
             found.push((Added::Level, what, shorter(fitted, run)));
@@ -101,7 +101,7 @@ fn repeated(fitted: &Evidence, run: usize, times: f64) -> Evidence {
 }
 
 /// True if the law of a link has inner states, so that its force depends on the stroke.
-fn has_inner_states(model: &dyn Model, link: &str, axis: Axis) -> bool {
+fn has_inner_states(model: &dyn Model, link: &str, axis: &Axis) -> bool {
     let links = model.about().links.iter();
     let place = links
         .clone()
@@ -142,8 +142,8 @@ fn sensed(model: &dyn Model, signal: &Signal) -> (Quantity, &'static str) {
 fn with_sensor(model: &dyn Model, fitted: &Evidence, output: &Output) -> Option<(String, Evidence)> {
     let signal = &output.signal;
     let (quantity, word) = sensed(model, signal);
-    let axis = [Axis::Z, Axis::X].into_iter().find(|axis| axis.name() == signal.axis)?;
-    let sensor = Point::new(&signal.location, axis, quantity);
+    let axis = Axis::new(signal.axis.clone());
+    let sensor = Point::new(&signal.location, axis.clone(), quantity);
     let mut more = fitted.clone();
     for (run, own) in fitted.runs.iter().enumerate() {
         if !matches!(own.stimulus, Stimulus::Sweep { .. } | Stimulus::History { .. }) {
@@ -188,13 +188,13 @@ fn is_measured(fitted: &Evidence, link: &Link) -> bool {
 }
 
 fn with_dynamometer(fitted: &Evidence, link: &Link) -> Evidence {
-    let axis = if link.axis == Axis::X.name() { Axis::X } else { Axis::Z };
+    let axis = Axis::new(link.axis.clone());
     let out = SPEEDS.iter().copied();
     let speeds: Vec<f64> = out.clone().rev().map(|speed| -speed).chain(out).collect();
     let mut more = fitted.clone();
     more.series.push(Series {
         run: more.runs.len(),
-        sensor: Point::new(&format!("{}_on_dynamometer", link.name), axis, Quantity::Force),
+        sensor: Point::new(&format!("{}_on_dynamometer", link.name), axis.clone(), Quantity::Force),
         kind: Kind::Speed,
         value: vec![Complex::ONE; speeds.len()],
         sigma: vec![UNCERTAINTY; speeds.len()],
