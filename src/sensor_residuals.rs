@@ -95,6 +95,5 @@ fn word(kind: Kind) -> &'static str {
 
 /// Name of a sensor in tables and JSON.
 pub(crate) fn channel(sensor: &Point) -> String {
-    let axis = format!("{:?}", sensor.axis).to_lowercase();
-    format!("{}_{axis}", sensor.place().replace(' ', "_"))
+    format!("{}_{}", sensor.place().replace(' ', "_"), sensor.axis.name())
 }

@@ -61,10 +61,11 @@ pub struct Probable {
     /// Probability that the effect is missing, given that one of the fitted sets is true. Sets that the held-out runs
     /// do not support, and limiting cases of simpler sets, do not count.
     pub probability: f64,
-    /// Share of the excess residual that the best of the smallest sets with it explains, as in [`Finding::explained`].
+    /// Share of the excess residual that the effect explains alone, as in [`Finding::explained`]; `None` also if it was
+    /// only fitted beside others.
     pub explained: Option<f64>,
-    /// Increase of the log evidence by that set.
-    pub log_evidence: f64,
+    /// Increase of the log evidence by the effect alone; `None` if it was only fitted beside others.
+    pub log_evidence: Option<f64>,
 }
 
 /// Result of a search.

@@ -69,8 +69,8 @@ function candidateTable({ candidates, probability }) {
       ['effect', 'text'],
       ['form', 'text'],
       ['probability', 'number'],
-      ['explained share', 'number'],
-      ['gain in log evidence', 'number'],
+      ['explained share, alone', 'number'],
+      ['gain in log evidence, alone', 'number'],
     ],
     candidates.map((own) => [
       `${words(own.effect)} at ${words(own.at)}`,
@@ -143,7 +143,7 @@ function kappaPart(all) {
       [
         ['place', 'text'],
         ['kind', 'text'],
-        ['explained share', 'number'],
+        ['explained share, alone', 'number'],
         ['by a linear effect', 'number'],
       ],
       rows,

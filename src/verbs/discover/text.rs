@@ -84,7 +84,7 @@ fn candidates(all: &[Probable]) -> String {
             own.at.clone(),
             format!("{:.3}", own.probability),
             or_dash(own.explained.map(|share| 100.0 * share), 3),
-            number(own.log_evidence, 4),
+            or_dash(own.log_evidence, 4),
         ]);
     }
     format!("\n{}", table.text())

@@ -105,8 +105,8 @@ fn share(part: f64, all: f64) -> f64 {
 /// Number of candidates in the answer.
 const CANDIDATES: usize = 3;
 
-/// The most probable effects, each described by the best of the smallest sets that contain it. Dismissed answers do not
-/// count towards the probability.
+/// The most probable effects, and those of equal probability by what they gain alone. Dismissed answers do not count
+/// towards the probability.
 fn candidates(sets: &[Set], answers: &[Answer], before: &Set, evidence: &Evidence) -> Vec<Probable> {
     let mut names: Vec<(&str, &str)> = sets.iter().flat_map(Set::names).collect();
     names.sort_unstable();
@@ -121,6 +121,7 @@ fn candidates(sets: &[Set], answers: &[Answer], before: &Set, evidence: &Evidenc
         };
         let best = with.max_by(order)?;
         let holds = |own: &&Answer| !own.dismissed && sets[own.set].names().contains(&name);
+        let alone = Some(best).filter(|set| set.names().len() == 1);
         let form = best
             .assembly
             .effects()
@@ -133,14 +134,15 @@ fn candidates(sets: &[Set], answers: &[Answer], before: &Set, evidence: &Evidenc
             at: name.1.to_owned(),
             form,
             probability: share(answers.iter().filter(holds).map(|own| own.probability).sum(), all),
-            explained: stated_share(before, best, evidence),
-            log_evidence: best.explanation.refit.log_evidence - before.explanation.refit.log_evidence,
+            explained: alone.and_then(|set| stated_share(before, set, evidence)),
+            log_evidence: alone.map(|set| set.explanation.refit.log_evidence - before.explanation.refit.log_evidence),
         })
     });
     let mut probable: Vec<Probable> = probable.collect();
     probable.sort_by(|a, b| {
         let order = b.probability.total_cmp(&a.probability);
-        order.then(b.log_evidence.total_cmp(&a.log_evidence))
+        let gain = |own: &Probable| own.log_evidence.unwrap_or(f64::NEG_INFINITY);
+        order.then(gain(b).total_cmp(&gain(a)))
     });
     probable.truncate(CANDIDATES);
     probable
