@@ -16,9 +16,13 @@ pub fn unknown(about: &About, campaign: &Campaign) -> Vec<String> {
     let say = |own: &Channel| {
         let (location, quantity, axis) = (&own.location, own.quantity.name(), own.axis.name());
         let (channel, model) = (&own.name, &about.name);
-        let remedy = match nearest_place(about, &Point::new(location, own.axis.clone(), own.quantity)) {
+        let point = Point::new(location, own.axis.clone(), own.quantity);
+        let remedy = match nearest_place(about, &point) {
             Some(nearest) => format!("did you mean `{nearest}`?"),
-            None => format!("if it should, add `output {location}.{quantity};` to the model"),
+            None => format!(
+                "if it should, add `output {location}.{};` to the model",
+                point.kind(about).word()
+            ),
         };
         format!(
             "channel `{channel}`: model `{model}` gives no {quantity} of `{location}` along {axis}, so nothing is compared with \

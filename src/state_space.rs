@@ -5,9 +5,7 @@
 use std::collections::BTreeMap;
 
 use qcar_runtime::matrices::{at_rest, sensitivities_at_rest};
-use qcar_runtime::model::{
-    About, Input, InputKind, Matrix, Model, Output, Quantity, Signal, SignalKind, State, StateKind,
-};
+use qcar_runtime::model::{About, Input, InputKind, Matrix, Model, Output, Quantity, Signal, State, StateKind};
 use qcar_runtime::response::parameters::Values;
 use serde::Serialize;
 
@@ -267,19 +265,12 @@ fn motion_kind(road: bool, quantity: Quantity) -> &'static str {
 /// An output for JSON.
 pub fn output_name(output: &Output) -> OutputName {
     let Signal { location, axis, kind } = &output.signal;
-    let kind = match kind {
-        SignalKind::Motion(Quantity::Position) => "position",
-        SignalKind::Motion(Quantity::Velocity) => "velocity",
-        SignalKind::Motion(Quantity::Acceleration) => "acceleration",
-        SignalKind::Force => "force",
-        SignalKind::Stretch => "stretch",
-    };
     let [name, location, axis, unit] = [&output.name, location, axis, &output.unit].map(|text| text.to_string());
     OutputName {
         name,
         location,
         axis,
-        kind,
+        kind: kind.word(),
         unit,
     }
 }

@@ -127,16 +127,8 @@ fn a_compliant_damper_with_two_slopes_is_named() {
             ("force", 3.0, forces.collect()),
         ]
     });
-    let head = [
-        "format = 1\nname = \"crank\"\nmodel = \"linear_damper\"\n".to_owned(),
-        parameter("c_damper", 3000.0, "N s/m", (100.0, 1e5)),
-        parameter("k_damper", 1000.0, "N/m", (1.0, 1e5)),
-        parameter("f_offset", 100.0, "N", (-500.0, 500.0)),
-        channel("rod", "rod", "z", "displacement", "m"),
-        channel("force", "damper", "z", "force", "N"),
-    ];
     let folder = tempfile::tempdir().expect("a folder");
-    write(folder.path(), &head.concat(), (200.0, false), runs.into());
+    write(folder.path(), &crank(), (200.0, false), runs.into());
     let answer = discover(folder.path(), None);
     let truth = [
         ("k_series", 4e5, 0.05),
@@ -145,6 +137,67 @@ fn a_compliant_damper_with_two_slopes_is_named() {
         ("slope_beyond", 0.2667, 0.05),
     ];
     is_found(&answer, "compliant_digressive_damper", &truth);
+}
+
+/// A damper whose valves open gradually: 700 N s/m for ever, and the rest of 15.7 kN s/m falls like `asinh`. Without a
+/// slope beyond the knee, a digressive damper predicts the faster held-out run badly.
+#[test]
+fn a_damper_that_keeps_a_slope_is_named() {
+    let folder = on_a_crank(|_, v| 900.0 * (v / 0.06).asinh() + 700.0 * v, 1.5);
+    is_found(&discover(folder.path(), None), "digressive_damper", &[]);
+}
+
+/// An air spring: 20 kN/m at rest, a column of 60 mm, and the polytropic exponent 1.35.
+#[test]
+fn a_column_of_gas_is_named() {
+    let spring = |s: f64| 20e3 * 0.06 / 1.35 * (1.0 - (1.0 + s / 0.06).powf(-1.35));
+    let folder = on_a_crank(|s, v| spring(s) + 3000.0 * v, 1.0);
+    let answer = discover(folder.path(), None);
+    is_found(&answer, "progressive_spring", &[]);
+    assert_eq!(answer["effects"][0]["form"], "gas", "{answer}");
+}
+
+/// A stop of foam beyond 12 mm: 40 kN/m at contact, four times as stiff at 6 mm of compression.
+#[test]
+fn a_stop_of_foam_is_named() {
+    let stop = |s: f64| 4e4 * (s + 0.012).min(0.0) * (1.0 + ((s + 0.012).min(0.0) / 6e-3).powi(2));
+    let folder = on_a_crank(|s, v| 20e3 * s + 3000.0 * v + stop(s), 1.0);
+    let truth = [("gap", 0.012, 0.05), ("k_stop", 4e4, 0.1), ("d_stiff", 6e-3, 0.1)];
+    is_found(&discover(folder.path(), None), "bump_stop", &truth);
+}
+
+/// A campaign of a strut on a crank, whose force is a law of its stretch and rate; the held-out run is `faster`.
+fn on_a_crank(law: impl Fn(f64, f64) -> f64, faster: f64) -> tempfile::TempDir {
+    let rates = [0.5, 1.5, 2.5, 2.0 * faster];
+    let runs = [0.02, 0.02, 0.018, 0.02].into_iter().zip(rates).map(|(size, f)| {
+        let samples = || (0..600).map(|k| f64::from(k) / 200.0);
+        let stretch = |t: f64| size * ((TAU * f * t).sin() + 0.1 * ((2.0 * TAU * f * t).cos() - 1.0));
+        let rate = |t: f64| size * TAU * f * ((TAU * f * t).cos() - 0.2 * (2.0 * TAU * f * t).sin());
+        vec![
+            ("rod", 1e-5, samples().map(stretch).collect()),
+            (
+                "force",
+                3.0,
+                samples().map(|t| law(stretch(t), rate(t)) + 80.0).collect(),
+            ),
+        ]
+    });
+    let folder = tempfile::tempdir().expect("a folder");
+    write(folder.path(), &crank(), (200.0, false), runs.collect());
+    folder
+}
+
+/// The head of a campaign of a strut on a crank.
+fn crank() -> String {
+    let head = [
+        "format = 1\nname = \"crank\"\nmodel = \"linear_damper\"\n".to_owned(),
+        parameter("c_damper", 3000.0, "N s/m", (100.0, 1e5)),
+        parameter("k_damper", 1000.0, "N/m", (1.0, 1e5)),
+        parameter("f_offset", 100.0, "N", (-500.0, 500.0)),
+        channel("rod", "rod", "z", "displacement", "m"),
+        channel("force", "damper", "z", "force", "N"),
+    ];
+    head.concat()
 }
 
 /// A mass of 2 kg on 50 kN/m with 10 N s/m, which meets a stop of 200 kN/m at 1.2 mm on one side. Its linear model leaves

@@ -198,6 +198,19 @@ pub enum SignalKind {
     Stretch,
 }
 
+impl SignalKind {
+    /// The word for it in model files, as in `output body.acceleration;`.
+    pub const fn word(self) -> &'static str {
+        match self {
+            SignalKind::Motion(Quantity::Position) => "position",
+            SignalKind::Motion(Quantity::Velocity) => "velocity",
+            SignalKind::Motion(Quantity::Acceleration) => "acceleration",
+            SignalKind::Force => "force",
+            SignalKind::Stretch => "stretch",
+        }
+    }
+}
+
 /// An entry of `y`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {

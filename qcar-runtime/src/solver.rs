@@ -16,6 +16,8 @@ mod fastest;
 // Explicit Runge-Kutta methods, adaptive and fixed.
 mod dormand_prince;
 pub(crate) mod rk4;
+// An implicit Runge-Kutta method with derivatives.
+pub(crate) mod radau;
 // Exponentials of matrices.
 mod matrix;
 // Polynomials through past forces.

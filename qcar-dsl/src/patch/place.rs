@@ -38,7 +38,10 @@ pub fn fitting(base: &ModelTree, roles: &Roles, pattern: &Pattern) -> Vec<Place>
             places.push(Place { label, direction, name });
         }
     }
-    places.retain(|place| pattern.given.iter().all(|given| has(base, roles, place, &given.text)));
+    places.retain(|place| {
+        let mut given = pattern.given.iter();
+        given.all(|given| has(base, roles, (pattern.kind, place), &given.text))
+    });
     places
 }
 
@@ -102,7 +105,12 @@ fn is_on(base: &ModelTree, roles: &Roles, along: &str, pattern: &Pattern, name: 
     end.is_some_and(|end| base.pointed_at(along, &end) == base.pointed_at(along, &wanted))
 }
 
-fn has(base: &ModelTree, roles: &Roles, place: &Place, name: &str) -> bool {
+/// True if the model has what this name means. A pivot that a mass is to have must be a point on that mass.
+fn has(base: &ModelTree, roles: &Roles, (kind, place): (PlaceKind, &Place), name: &str) -> bool {
     let along = &place.direction;
-    base.global(name).is_some() || base.declares(along, name) || roles.meant(base, along, name).is_some()
+    match roles.meant(base, along, name) {
+        Some(point) if name == "pivot" && kind == PlaceKind::Mass => base.pointed_at(along, &point) == place.name,
+        Some(_) => true,
+        None => base.global(name).is_some() || base.declares(along, name),
+    }
 }

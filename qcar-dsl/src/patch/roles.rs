@@ -30,6 +30,8 @@ pub struct Roles {
     body: BTreeMap<String, String>,
     /// The mass, other than the body, about which levers of the suspension turn.
     pivot: Option<String>,
+    /// The named point on a mass about which they turn.
+    pivot_point: Option<String>,
     /// Each link of the axle's own directions with its role.
     links: BTreeMap<(String, String), &'static str>,
     /// Parts that are connected to the rest by one mount only.
@@ -66,7 +68,7 @@ impl Roles {
             let body = same.or_else(|| masses.heaviest(name, roles.wheel.as_deref(), &|_| true));
             roles.body.extend(body.map(|body| (name.to_string(), body)));
         }
-        roles.pivot = roles.found_pivot(base, &graphs);
+        (roles.pivot, roles.pivot_point) = roles.found_pivot(base, &graphs);
         for graph in &graphs {
             roles.sort_links(base, graph);
         }
@@ -79,6 +81,7 @@ impl Roles {
         match word {
             "body" => self.body.get(direction).cloned(),
             "wheel" => self.wheel.as_ref().filter(moves).cloned(),
+            "pivot" => self.pivot_point.clone().filter(|_| self.is_own(direction)),
             "hanger" => {
                 let graph = Graph::of(base, base.direction(direction)?);
                 let hangs = |ends: &BTreeSet<String>| ends.len() == 2 && !ends.is_disjoint(&self.hanging);
@@ -125,14 +128,27 @@ impl Roles {
         self.along.as_ref().is_none_or(|along| along == direction)
     }
 
-    /// The mass about which levers of the suspension turn, if it is a separate mass.
-    fn found_pivot(&self, base: &ModelTree, graphs: &[Graph]) -> Option<String> {
-        let along = self.along.as_ref()?;
-        let (wheel, body) = (self.wheel.as_ref()?, self.body.get(along));
-        let graph = graphs.iter().find(|graph| graph.along() == along)?;
-        let suspending = graph.joints.iter().filter(|joint| joint.ends.contains(wheel));
-        let mut points = suspending.flat_map(|joint| levered(base, along, joint.link));
-        points.find(|point| point != wheel && Some(point) != body && is_mass(base, along, point))
+    /// The mass about which levers of the suspension turn, if it is a separate mass, and the named point on that mass or
+    /// on the body about which they turn.
+    fn found_pivot(&self, base: &ModelTree, graphs: &[Graph]) -> (Option<String>, Option<String>) {
+        let (Some(along), Some(wheel)) = (&self.along, &self.wheel) else {
+            return (None, None);
+        };
+        let suspending = graphs.iter().filter(|graph| graph.along() == along).flat_map(|graph| {
+            let joints = graph.joints.iter();
+            joints.filter(|joint| joint.ends.contains(wheel))
+        });
+        let points: Vec<(String, String)> = suspending
+            .flat_map(|joint| levered(base, along, joint.link))
+            .map(|point| (base.pointed_at(along, &point), point))
+            .filter(|(mass, _)| mass != wheel && is_mass(base, along, mass))
+            .collect();
+        let mass = points.iter().find(|(mass, _)| Some(mass) != self.body.get(along));
+        let point = points.iter().find(|(mass, point)| mass != point);
+        (
+            mass.map(|(mass, _)| mass.clone()),
+            point.map(|(_, point)| point.clone()),
+        )
     }
 
     fn sort_links(&mut self, base: &ModelTree, graph: &Graph) {

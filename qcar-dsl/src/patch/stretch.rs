@@ -38,11 +38,11 @@ pub fn lever(base: &ModelTree, direction: &str, link: &Link, point: &str) -> Opt
     own.next().and_then(|part| part.factor)
 }
 
-/// The points that have a factor in a stretch: the moving ends and the pivots of levers.
+/// The points that have a factor in a stretch, as written: the moving ends and the pivots of levers.
 pub fn levered(base: &ModelTree, direction: &str, link: &Link) -> Vec<String> {
     let parts = parts(base, direction, &link.stretch).into_iter();
     let levered = parts.filter(|part| part.factor.is_some());
-    levered.map(|part| base.pointed_at(direction, &part.point)).collect()
+    levered.map(|part| part.point).collect()
 }
 
 fn parts(base: &ModelTree, direction: &str, stretch: &Expression) -> Vec<Part> {

@@ -183,7 +183,7 @@ pub fn missing(about: &About, signal: &Signal) -> SignalError {
     if known.iter().any(|place| *place == signal.location) {
         SignalError::NoOutput {
             location,
-            quantity: quantity(signal.kind),
+            quantity: signal.kind.word(),
             model,
         }
     } else {
@@ -227,14 +227,4 @@ pub fn places<'a>(about: &'a About, axis: &str) -> Vec<&'a str> {
         }
     }
     all
-}
-
-fn quantity(kind: SignalKind) -> &'static str {
-    match kind {
-        SignalKind::Motion(Quantity::Position) => "position",
-        SignalKind::Motion(Quantity::Velocity) => "velocity",
-        SignalKind::Motion(Quantity::Acceleration) => "acceleration",
-        SignalKind::Force => "force",
-        SignalKind::Stretch => "stretch",
-    }
 }

@@ -9,7 +9,7 @@ use super::sampling::{AntiAlias, Grid};
 use super::settings::{Integrator, Settings, judged};
 use crate::model::{About, Model};
 use crate::progress::{self, OnProgress};
-use crate::road::Road;
+use crate::road::{Road, RoadError};
 use crate::solver::{Effort, ExponentialAdams, Reason, System};
 use crate::tyre::{Geometry, Tyre};
 
@@ -222,7 +222,7 @@ impl Drive<'_> {
         let speed = positive("the speed", self.speed, "m/s")?;
         let rate = positive("the sample rate", self.sample_rate, "Hz")?;
         positive("the number of samples", self.samples as f64, "")?;
-        self.road.check_reaches(speed * (self.samples - 1) as f64 / rate)?;
+        self.stays_on_road()?;
         let passage = tyre.patch() / speed;
         let least = SAMPLES_PER_PATCH / passage;
         if rate < least {
@@ -235,6 +235,15 @@ impl Drive<'_> {
         } else {
             Ok(())
         }
+    }
+
+    /// Refuses a ride that would leave the road.
+    ///
+    /// # Errors
+    /// [`RoadError::TooShort`].
+    pub fn stays_on_road(&self) -> Result<(), RoadError> {
+        let duration = self.samples.saturating_sub(1) as f64 / self.sample_rate;
+        self.road.check_reaches(self.speed * duration)
     }
 
     /// Time at which the whole circle of the tyre is before the first point of the road, s.

@@ -5,7 +5,7 @@ use std::path::Path;
 use qcar_dsl::response::Wanted;
 use qcar_runtime::campaign::{Campaign, Role, Run, Test};
 use qcar_runtime::error::InputError;
-use qcar_runtime::simulate::tyre;
+use qcar_runtime::simulate::{Cleat, tyre};
 
 use crate::catalogue::{self, Loaded};
 use crate::failure::Failure;
@@ -34,7 +34,9 @@ pub(super) fn verdict(folder: &Path) -> Result<(bool, String), Failure> {
         }
     }
     sentences.extend(suspect_units(&campaign)?);
-    let well = !findings.iter().any(|finding| finding.fatal);
+    let short = short_roads(&campaign)?;
+    let well = !findings.iter().any(|finding| finding.fatal) && short.is_empty();
+    sentences.extend(short);
     let verdict = match (well, sentences.is_empty()) {
         (true, true) => "ok".to_string(),
         (true, false) => "ok, with warnings".into(),
@@ -56,6 +58,17 @@ fn check_values(campaign: &Campaign, model: &Loaded) -> Result<(), InputError> {
         tyre(campaign)?;
     }
     Ok(())
+}
+
+/// Cleat runs that would leave their roads, which no ride may.
+fn short_roads(campaign: &Campaign) -> Result<Vec<String>, InputError> {
+    let cleats = campaign.runs.iter().map(|run| Cleat::read(campaign, run));
+    let cleats: Vec<Option<Cleat>> = cleats.collect::<Result<_, _>>()?;
+    let short = cleats.iter().flatten().filter_map(|cleat| {
+        let error = cleat.drive().stays_on_road().err()?;
+        Some(format!("{}: {error}; {}", cleat.run.name, error.remedy()))
+    });
+    Ok(short.collect())
 }
 
 /// Sensors whose samples contradict their unit.

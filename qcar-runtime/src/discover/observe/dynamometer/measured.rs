@@ -26,7 +26,11 @@ impl Evidence {
         let of = |column: &[f64]| rows.iter().map(|&row| column[row]).collect::<Vec<f64>>();
         self.series.push(Series {
             run: self.runs.len(),
-            sensor: Point::new(&format!("{}_on_dynamometer", test.link), test.axis.clone(), Quantity::Force),
+            sensor: Point::new(
+                &format!("{}_on_dynamometer", test.link),
+                test.axis.clone(),
+                Quantity::Force,
+            ),
             kind: Kind::Speed,
             at: of(&table.velocity),
             value: of(&table.force).into_iter().map(Complex::from).collect(),
