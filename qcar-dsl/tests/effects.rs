@@ -332,7 +332,6 @@ fn renamed(model: &Checked) -> Checked {
         ("sf", "cradle"),
         ("pwt", "engine"),
         ("pad", "shaker"),
-        ("pivot", "arms"),
     ];
     let links = [
         ("tire", "pneumatic"),
@@ -381,9 +380,39 @@ fn effects_go_by_what_the_parts_do_not_by_what_they_are_called() {
             found.remove(place.unwrap_or_else(|| panic!("{name} loses {own:?}")));
         }
         // What an effect adds is refused only where the model has something of that name.
-        found.retain(|(effect, _)| *effect != "suspended_mass");
+        found.retain(|(effect, _)| *effect != "suspended_mass" && *effect != "subframe");
         assert!(found.is_empty(), "{name}: {found:?}");
     }
+}
+
+/// A sub-frame takes the place of the point about which the levers turn, if this point is on the body.
+#[test]
+fn a_pivot_is_where_levers_turn_whatever_its_name() {
+    let text = |arms: &str| {
+        format!(
+            "axle levers {{ param k: N/m = 5e4 in 1e3..1e6; param c: N s/m = 1e3 in 1..1e5; param kt: N/m = 2e5 in 1e4..1e6;
+                known param i: 1 = 0.7 in 0.1..2; known param frame_mass: kg = 12 in 1..100;
+                direction z {{ road shaker; mass chassis = 400 kg; mass hub = 40 kg; mass frame = frame_mass;
+                    point arms = {arms};
+                    link mount: chassis - frame {{ spring 2e6 N/m; damper 500 N s/m; }}
+                    link tyre: hub - shaker {{ spring kt; }}
+                    link coil: chassis - arms - i*(hub - arms) {{ spring k; damper c; }}
+                    output chassis.acceleration; }} }}"
+        )
+    };
+    let places = |arms: &str, name: &str| {
+        let source = Source {
+            name: "levers.axle".into(),
+            text: text(arms),
+        };
+        let checked = check(source, &load).unwrap_or_else(|report| panic!("{report}"));
+        effect(name).places(&checked)
+    };
+    let none: [&str; 0] = [];
+    assert_eq!(places("chassis", "subframe"), ["chassis"]);
+    assert_eq!(places("chassis", "subframe_pitch"), none);
+    assert_eq!(places("frame", "subframe"), none);
+    assert_eq!(places("frame", "subframe_pitch"), ["subframe"]);
 }
 
 /// The part of a body above the other axle may be the heavier one.
