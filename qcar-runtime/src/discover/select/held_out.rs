@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::set::{Set, excess, explained_share, is_part, most_probable_first};
+use super::set::{Set, best_base, excess, explained_share, is_part, most_probable_first};
 use crate::campaign::Role;
 use crate::discover::observe::Evidence;
 use crate::discover::posterior::Explanation;
@@ -11,11 +11,22 @@ use crate::discover::posterior::Explanation;
 /// if it predicts the held-out runs at least as well, if it has effects and the additional ones explain too little of
 /// its excess residual, if one of these has a parameter at its bound, or if only the cleat runs along one axis prefer
 /// the set. The last two checks need no held-out runs. A set with a magnitude at its bound replaces no other.
+///
+/// Fewer effects that are no part of the set replace it if they explain nearly all of the residual and predict the
+/// held-out runs at least as well: several effects can imitate a law whose form is a little different.
 pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
     let has_held_out = evidence.of_role(Role::HeldOut).next().is_some();
+    let unexplained = evidence.numbers.error_probability * excess(&sets[best_base(sets)].explanation, evidence);
+    let is_simpler = |other: &Set, set: &Set| {
+        let explains = has_held_out && excess(&other.explanation, evidence) <= unexplained;
+        explains && !other.names().is_empty() && !predicts_better(set, other, evidence)
+    };
     loop {
         let count = sets[best].names().len();
-        let is_less = |other: &usize| sets[*other].names().len() < count && is_part(&sets[*other], &sets[best]);
+        let is_less = |other: &usize| {
+            let other = &sets[*other];
+            other.names().len() < count && (is_part(other, &sets[best]) || is_simpler(other, &sets[best]))
+        };
         let is_answer = |other: &usize| is_less(other) && !sets[*other].has_magnitude_at_bound();
         let withdrawn = |&part: &usize| {
             // If the part leaves no more than noise, there is nothing to explain.
