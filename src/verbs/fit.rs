@@ -9,7 +9,7 @@ use clap_complete::engine::ArgValueCompleter;
 use nalgebra::Complex;
 use qcar_dsl::check::Unseen;
 use qcar_dsl::response::Wanted;
-use qcar_runtime::campaign::{Campaign, Role, Test};
+use qcar_runtime::campaign::{Campaign, Role, Run, Test};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::fit::bootstrap::Bootstrap;
 use qcar_runtime::fit::measure::levels;
@@ -272,7 +272,8 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
         Some(found) => records::known(plan, found),
         None => plan,
     };
-    refuse_unseen(&model, &plan)?;
+    let has_more = of_all_runs.is_none() && campaign.runs.iter().any(is_beyond_sweeps);
+    refuse_unseen(&model, &plan, has_more)?;
     let levels = match &of_all_runs {
         Some(found) if !found.is_driven() => Vec::new(),
         _ => measure(&campaign, model.about(), choices)?,
@@ -367,9 +368,21 @@ fn profiles(setup: &Setup<'_, dyn Model + '_>, fit: &Fit, names: &[String], camp
     })
 }
 
+/// True for a fitted run that a fit to transmissibilities does not use.
+fn is_beyond_sweeps(run: &Run) -> bool {
+    run.role == Role::Fit && !matches!(run.test, Test::Sweep(_))
+}
+
+/// `has_more` tells that further runs may determine them.
+///
 /// # Errors
 /// Fails if parameters are to be fitted together of which the outputs determine fewer combinations.
-fn refuse_unseen(model: &Loaded, plan: &Plan) -> Result<(), InputError> {
+fn refuse_unseen(model: &Loaded, plan: &Plan, has_more: bool) -> Result<(), InputError> {
+    let known = "set `fit = false` for those that are known from elsewhere, or name them with --fix";
+    let remedy = match has_more {
+        true => format!("fit all runs of the campaign with --all-runs, {known}"),
+        false => known.into(),
+    };
     let is_fitted = |name: &&String| plan.parameters.iter().any(|own| own.fit && own.name == **name);
     let problem = |unseen: &Unseen| {
         let fitted: Vec<String> = unseen
@@ -388,7 +401,7 @@ fn refuse_unseen(model: &Loaded, plan: &Plan) -> Result<(), InputError> {
                     unseen.seen
                 ),
                 "parameters that the outputs can distinguish",
-                "set `fit = false` for those that are known from elsewhere, or name them with --fix",
+                remedy.clone(),
             )
         };
         (fitted.len() > unseen.seen).then(wrong)

@@ -29,6 +29,7 @@ use crate::failure::{Failure, flag};
 use crate::files::put;
 use crate::parameters::campaign_out_of_range;
 use crate::progress::{Showing, while_counting};
+use crate::sensor_residuals;
 use crate::terminal::prose;
 use crate::verbs::Format;
 use crate::workshop::{Bench, given};
@@ -103,6 +104,9 @@ pub(crate) fn fit(mut campaign: Campaign, choices: &Choices) -> Result<Nonlinear
     campaign.notices.extend(evidence.notices.iter().cloned());
     let outside = campaign_out_of_range(&about, &campaign);
     campaign.notices.extend(outside);
+    campaign
+        .notices
+        .extend(unpredicted(&found.evidence, &found.explanation));
     let profiles = profiles(
         bench.model(),
         &found.explanation.refit,
@@ -118,6 +122,21 @@ pub(crate) fn fit(mut campaign: Campaign, choices: &Choices) -> Result<Nonlinear
         found,
         seconds: begun.elapsed().as_secs_f64(),
         campaign,
+    })
+}
+
+/// A sentence on the sensors whose residual is unknown, because the model has no finite prediction of a run.
+fn unpredicted(evidence: &Evidence, explanation: &Explanation) -> Option<String> {
+    let left = sensor_residuals::left(evidence, [explanation; 2]);
+    let unknown = left.iter().filter(|own| !own.after_percent.is_finite());
+    let unknown: Vec<String> = unknown
+        .map(|own| format!("`{}` in a {}", own.channel, own.kind))
+        .collect();
+    (!unknown.is_empty()).then(|| {
+        format!(
+            "with these values the model does not predict {}: its motion diverges, or its steady state is not found",
+            unknown.join(", ")
+        )
     })
 }
 
