@@ -82,7 +82,12 @@ axle on_a_post {
 fn stops_of_either_side_are_both_tried() {
     for model in ["one_mass", "quarter_car", "axle_a", "axle_b", "axle_c", "axle_d"] {
         let all = forms(model, "bump_stop");
-        for form in ["in_compression", "in_rebound", "both_ways"] {
+        for form in [
+            "in_compression",
+            "progressive_in_compression",
+            "in_rebound",
+            "both_ways",
+        ] {
             assert!(all.iter().any(|own| own == form), "{model}: {all:?}");
         }
     }
@@ -93,8 +98,16 @@ fn stops_of_either_side_are_both_tried() {
 fn the_laws_of_a_damper_on_a_rig_are_all_tried() {
     for (effect, expected) in [
         ("segmented_polynomial_damper", vec!["parabolas", "slopes"]),
-        ("digressive_damper", vec!["gradual", "blow_off"]),
-        ("bump_stop", vec!["in_compression", "in_rebound", "both_ways"]),
+        ("digressive_damper", vec!["gradual", "blow_off", "two_slopes"]),
+        (
+            "bump_stop",
+            vec![
+                "in_compression",
+                "progressive_in_compression",
+                "in_rebound",
+                "both_ways",
+            ],
+        ),
     ] {
         assert_eq!(forms("linear_damper", effect), expected);
     }

@@ -161,7 +161,7 @@ fn forces_are_those_of_the_closed_form() {
     fs::write(&file, text).unwrap();
     let fitted = fit(folder.path());
     let found = fitted["parameters"]["c_out"]["value"].as_f64().unwrap();
-    // The table has four decimals, and states are integrated to 1e-8.
+    // The table has four decimals.
     assert!((found / 4200.0 - 1.0).abs() < 1e-5, "{found}");
     assert!(fitted["gap"]["fit"].as_f64().unwrap() < 0.1, "{fitted}");
 }
