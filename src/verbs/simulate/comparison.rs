@@ -32,7 +32,7 @@ pub struct Difference {
     pub role: &'static str,
     /// The mass.
     pub mass: String,
-    /// Axis: `z` or `x`.
+    /// Direction of the model.
     pub axis: String,
     /// Largest measured acceleration during the impact, m/s².
     pub measured_peak: f64,
