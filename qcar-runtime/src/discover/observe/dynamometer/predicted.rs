@@ -85,7 +85,7 @@ struct Bench<'a> {
     constants: Vec<f64>,
     /// For each free parameter, the positions of all parameters tied to it, itself included.
     moved: Vec<Vec<usize>>,
-    /// Size of each free parameter, which scales its sensitivities to the size of the states.
+    /// Size of each free parameter, which scales its slopes to changes of the force.
     sizes: Vec<f64>,
     u: Vec<f64>,
     nonzeros: Vec<f64>,
@@ -187,7 +187,9 @@ impl<'a> Bench<'a> {
         let x = states.x.as_slice();
         let mut force = [0.0];
         self.model.outputs(&self.constants, x, &self.u, &mut force);
-        self.differentiate(x);
+        self.model.matrices(self.p, x, &self.u, &mut self.nonzeros);
+        self.model
+            .parameter_jacobian(self.p, x, &self.u, &mut self.by_parameter);
         let mut slopes = vec![0.0; self.moved.len()];
         let about = self.model.about();
         for (entry, value) in about.matrices.iter().zip(&self.nonzeros) {
@@ -209,12 +211,6 @@ impl<'a> Bench<'a> {
             slopes,
         }
     }
-
-    fn differentiate(&mut self, x: &[f64]) {
-        self.model.matrices(self.p, x, &self.u, &mut self.nonzeros);
-        self.model
-            .parameter_jacobian(self.p, x, &self.u, &mut self.by_parameter);
-    }
 }
 
 impl Linearised for Bench<'_> {
@@ -224,25 +220,33 @@ impl Linearised for Bench<'_> {
         let mut tangent = Tangent {
             rate: DVector::zeros(states),
             by_state: DMatrix::zeros(states, states),
-            by_parameter: DMatrix::zeros(states, self.moved.len()),
         };
         let rate = tangent.rate.as_mut_slice();
         self.model.derivative(&self.constants, x.as_slice(), &self.u, rate);
-        self.differentiate(x.as_slice());
-        let about = self.model.about();
-        for (entry, value) in about.matrices.iter().zip(&self.nonzeros) {
+        self.model.matrices(self.p, x.as_slice(), &self.u, &mut self.nonzeros);
+        for (entry, value) in self.model.about().matrices.iter().zip(&self.nonzeros) {
             if entry.matrix == Matrix::A {
                 tangent.by_state[(usize::from(entry.row), usize::from(entry.column))] += value;
             }
         }
-        for (&(is_output, row, parameter), value) in about.parameter_jacobian.iter().zip(&self.by_parameter) {
+        tangent
+    }
+
+    fn by_parameter(&mut self, t: f64, x: &DVector<f64>) -> DMatrix<f64> {
+        self.set_angle(self.omega * t);
+        self.model
+            .parameter_jacobian(self.p, x.as_slice(), &self.u, &mut self.by_parameter);
+        let mut slopes = DMatrix::zeros(x.len(), self.moved.len());
+        for (&(is_output, row, parameter), value) in
+            self.model.about().parameter_jacobian.iter().zip(&self.by_parameter)
+        {
             for (k, moved) in self.moved.iter().enumerate() {
                 if !is_output && moved.contains(&usize::from(parameter)) {
-                    tangent.by_parameter[(usize::from(row), k)] += value;
+                    slopes[(usize::from(row), k)] += value;
                 }
             }
         }
-        tangent
+        slopes
     }
 }
 
