@@ -17,30 +17,29 @@ use crate::discover::posterior::Explanation;
 pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
     let has_held_out = evidence.of_role(Role::HeldOut).next().is_some();
     let unexplained = evidence.numbers.error_probability * excess(&sets[best_base(sets)].explanation, evidence);
-    let is_simpler = |other: &Set, set: &Set| {
-        let explains = has_held_out && excess(&other.explanation, evidence) <= unexplained;
-        explains && !other.names().is_empty() && !predicts_better(set, other, evidence)
-    };
     loop {
-        let count = sets[best].names().len();
-        let is_less = |other: &usize| {
-            let other = &sets[*other];
-            other.names().len() < count && (is_part(other, &sets[best]) || is_simpler(other, &sets[best]))
-        };
-        let is_answer = |other: &usize| is_less(other) && !sets[*other].has_magnitude_at_bound();
-        let withdrawn = |&part: &usize| {
+        let set = &sets[best];
+        let predicts_better = |part: &Set| predicts_better(set, part, evidence);
+        let is_part_enough = |part: &Set| {
             // If the part leaves no more than noise, there is nothing to explain.
-            let is_enough = || excess(&sets[part].with_sensors_of(&sets[best], evidence), evidence) <= 0.0;
-            let explained = || explained_share(&sets[part], &sets[best], evidence);
-            let explains_little = || is_enough() || explained() < evidence.numbers.explained();
-            let changes_little = !sets[part].names().is_empty() && explains_little();
-            let fails = has_held_out && (changes_little || !predicts_better(&sets[best], &sets[part], evidence));
-            fails
-                || sets[best].adds_effect_at_bound(&sets[part], evidence)
-                || rests_on_passages(&sets[best], &sets[part], evidence)
+            let is_enough = || excess(&part.with_sensors_of(set, evidence), evidence) <= 0.0;
+            let explains_little = || is_enough() || explained_share(part, set, evidence) < evidence.numbers.explained();
+            let changes_little = !part.names().is_empty() && explains_little();
+            let fails = has_held_out && (changes_little || !predicts_better(part));
+            fails || set.adds_effect_at_bound(part, evidence) || rests_on_passages(set, part, evidence)
         };
+        let is_simpler = |other: &Set| {
+            let explains = has_held_out && excess(&other.explanation, evidence) <= unexplained;
+            explains && !other.names().is_empty() && !predicts_better(other)
+        };
+        let replaces = |&other: &usize| match is_part(&sets[other], set) {
+            true => is_part_enough(&sets[other]),
+            false => is_simpler(&sets[other]),
+        };
+        let is_less = |other: &usize| sets[*other].names().len() < set.names().len();
+        let is_answer = |other: &usize| is_less(other) && !sets[*other].has_magnitude_at_bound();
         let parts = most_probable_first(sets, (0..sets.len()).filter(is_answer));
-        match parts.into_par_iter().find_first(withdrawn) {
+        match parts.into_par_iter().find_first(replaces) {
             Some(part) => best = part,
             None => return best,
         }
