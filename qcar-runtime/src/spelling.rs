@@ -1,6 +1,12 @@
-//! The known name nearest to an unknown one.
+//! The form of names, and the known name nearest to an unknown one.
 
 use strsim::levenshtein;
+
+/// True if a text can be a name in model files and campaigns: lower-case letters, digits and `_`, a letter first.
+pub fn is_name(text: &str) -> bool {
+    let is_plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+    text.starts_with(|c: char| c.is_ascii_lowercase()) && text.chars().all(is_plain)
+}
 
 /// The known name that differs from `name` in the fewest letters, if that is at most a third of its letters; names of
 /// one or two letters would resemble everything.

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
+use qcar_runtime::spelling;
 
 use crate::failure::{Failure, flag};
 
@@ -59,9 +60,7 @@ impl Named {
 
     /// Checks a name against the rules of model files and file systems.
     fn check(&self) -> Result<(), Failure> {
-        let first_is_letter = self.name.starts_with(|c: char| c.is_ascii_lowercase());
-        let is_plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
-        if first_is_letter && self.name.chars().all(is_plain) {
+        if spelling::is_name(&self.name) {
             return Ok(());
         }
         let found = format!("`{}`", self.name);

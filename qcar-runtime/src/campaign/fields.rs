@@ -242,13 +242,10 @@ impl<'a> Section<'a> {
         choice
     }
 
-    /// The direction `axis`; a campaign may be compared with several models, so it need not be one of them all.
+    /// The direction `axis`. Whether a model has it is not checked here: a campaign may be compared with several models.
     pub fn axis(&self) -> Option<Axis> {
         let name = self.text("axis")?;
-        let is_name = name.starts_with(|c: char| c.is_ascii_lowercase())
-            && name
-                .chars()
-                .all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
+        let is_name = spelling::is_name(&name);
         if !is_name {
             self.wrong(
                 "axis",
