@@ -226,6 +226,19 @@ fn a_sensor_measures_along_any_direction_of_the_model() {
     assert!(checked.stdout.contains(told), "{}", checked.stdout);
 }
 
+/// What `qcar check` proposes is what the language has: a displacement is the stretch of a link.
+#[test]
+fn a_proposed_output_is_one_of_the_language() {
+    let folder = tempfile::tempdir().unwrap();
+    moving_campaign(folder.path());
+    let manifest = folder.path().join("campaign.toml");
+    let text = fs::read_to_string(&manifest).unwrap();
+    fs::write(&manifest, text.replace("location = \"body\"", "location = \"damper\"")).unwrap();
+    let checked = qcar(&["check", folder.path().to_str().unwrap()]);
+    let proposed = "add `output damper.stretch;` to the model";
+    assert!(checked.stdout.contains(proposed), "{}", checked.stdout);
+}
+
 /// Every verb that fits uses the values of `qcar fit`.
 #[test]
 fn score_compare_and_study_fit_the_samples_of_time_histories_alone() {

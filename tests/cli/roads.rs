@@ -370,3 +370,23 @@ fn a_cleat_may_be_a_road_of_a_measured_file() {
     // that.
     assert!((own / plain - 1.0).abs() < 1e-5, "{own} {plain}");
 }
+
+#[test]
+fn a_road_that_ends_before_its_run_makes_a_campaign_unfit() {
+    let folder = tempfile::tempdir().unwrap();
+    copy(&Path::new(env!("CARGO_MANIFEST_DIR")).join(AXLE), folder.path());
+    let manifest = folder.path().join("campaign.toml");
+    let text = fs::read_to_string(&manifest).unwrap();
+    let path = folder.path().to_str().unwrap();
+    assert_eq!(qcar(&["check", path]).status, 0);
+    let cleat = text.find("kind = \"cleat\"").unwrap();
+    let (before, after) = text.split_at(cleat);
+    fs::write(
+        &manifest,
+        before.to_owned() + &after.replacen("speed = ", "speed = 9", 1),
+    )
+    .unwrap();
+    let checked = qcar(&["check", path]);
+    assert_eq!(checked.status, 1, "{}", checked.stdout);
+    assert!(checked.stdout.contains("the road ends at x = "), "{}", checked.stdout);
+}
