@@ -100,11 +100,39 @@ proptest! {
     #[test]
     fn any_expression_reads_back_as_itself(value in tree()) {
         let printed = value.to_string();
-        let parsed = parse_text(&source(format!("axle a {{ let x = {printed}; }}")), 0);
-        prop_assert!(parsed.mistakes.is_empty(), "{printed}: {:?}", parsed.mistakes);
-        let Some(Item::Axle(Axle { body, .. })) = parsed.file.items.first() else { panic!("no axle") };
-        let Some(Statement::Let(Let { value: read, .. })) = body.first() else { panic!("no let") };
-        prop_assert!(read == &value, "{printed} reads as {read}");
+        let back = read(&printed);
+        prop_assert!(back == value, "{printed} reads as {back}");
+    }
+}
+
+/// The tree of the expression, or the mistakes in its text.
+fn read(text: &str) -> Expression {
+    let parsed = parse_text(&source(format!("axle a {{ let x = {text}; }}")), 0);
+    assert!(parsed.mistakes.is_empty(), "{text}: {:?}", parsed.mistakes);
+    let Some(Item::Axle(Axle { body, .. })) = parsed.file.items.first() else {
+        panic!("no axle")
+    };
+    let Some(Statement::Let(Let { value, .. })) = body.first() else {
+        panic!("no let")
+    };
+    value.clone()
+}
+
+/// `m` and `s` are parameters here, not metre and second.
+#[test]
+fn a_divisor_is_not_printed_as_a_unit() {
+    let newtons = || read("2 N");
+    let quotient = |divisor: Expression| binary(Operator::Divide, newtons(), divisor).to_string();
+    let product = || binary(Operator::Multiply, name("m"), name("s"));
+    assert_eq!(quotient(name("m")), "2 N/(m)");
+    assert_eq!(quotient(product()), "(2 N)/(m*s)");
+    assert_eq!(quotient(binary(Operator::Multiply, name("m"), name("k"))), "2 N/(m*k)");
+    for divisor in [name("m"), product(), binary(Operator::Divide, name("m"), name("s"))] {
+        let printed = quotient(divisor.clone());
+        assert!(
+            read(&printed) == binary(Operator::Divide, newtons(), divisor),
+            "{printed}"
+        );
     }
 }
 

@@ -76,11 +76,16 @@ fn binary(operator: Operator, left: &Expression, right: &Expression) -> String {
     }
 }
 
-/// Puts a divisor in brackets if it could be read as a part of the unit of the number before it.
+/// Brackets keep a divisor from being read as a part of the unit of the number before it: `2 N/(m)`. A product is in
+/// brackets already and could be a unit nevertheless, so there they enclose the number: `(2 N)/(m*s)`.
 fn quotient(left: &Expression, right: &Expression) -> String {
     let (above, below) = (at_least(Rank::Product, left), at_least(Rank::Sign, right));
-    if ends_in_unit(left) && begins_like_unit(right) {
+    if !ends_in_unit(left) {
+        format!("{above}/{below}")
+    } else if begins_like_unit(right) {
         format!("{above}/({below})")
+    } else if reads_as_unit(right) {
+        format!("({above})/{below}")
     } else {
         format!("{above}/{below}")
     }
@@ -98,6 +103,19 @@ fn begins_like_unit(expression: &Expression) -> bool {
     match &expression.kind {
         ExpressionKind::Name(name) => units::symbol(&name.names[0].text).is_some(),
         ExpressionKind::Binary(Operator::Power, base, _) => begins_like_unit(base),
+        _ => false,
+    }
+}
+
+/// True for products, quotients and powers of nothing but symbols of units and plain numbers.
+fn reads_as_unit(expression: &Expression) -> bool {
+    match &expression.kind {
+        ExpressionKind::Name(name) => units::symbol(&name.names[0].text).is_some(),
+        ExpressionKind::Number(number) => number.unit.factors.is_empty(),
+        ExpressionKind::Binary(Operator::Multiply | Operator::Divide, left, right) => {
+            reads_as_unit(left) && reads_as_unit(right)
+        }
+        ExpressionKind::Binary(Operator::Power, base, _) => reads_as_unit(base),
         _ => false,
     }
 }
