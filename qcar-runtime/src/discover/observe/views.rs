@@ -52,7 +52,8 @@ impl Evidence {
     }
 
     /// Keeps every `step`-th value of each series for a coarse fit. Histories and cleat runs keep their beginning
-    /// instead, because their simulation computes every sample up to the last one that is compared.
+    /// instead, because their simulation computes every sample up to the last one that is compared. K&C runs keep all
+    /// values.
     pub fn thinned(&self, step: usize) -> Self {
         let mut thinned = self.clone();
         let shorten = |(run, of): (usize, &mut Run)| {
@@ -122,6 +123,9 @@ impl Stimulus {
                 passage.points_a_sample = COARSE_POINTS;
                 (end.next_up(), times.div_ceil(2))
             }
+            // A K&C rig is followed along its whole path, whatever is compared, and what a stop does may be seen at a
+            // few values at the end of the travel only.
+            Stimulus::Travel { .. } | Stimulus::Sine { .. } => (f64::INFINITY, 1),
             _ => (f64::INFINITY, times),
         }
     }
