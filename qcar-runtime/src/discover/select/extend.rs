@@ -110,7 +110,7 @@ fn extended(
     // from the given values; sets with effects have already been fitted from there.
     let is_far_off = lead == 0.0 && is_missing(set, evidence);
     let least = (candidates.len() as f64 / evidence.numbers.false_alarms).ln();
-    // The screening uses every sixth line only, while the lead counts all lines.
+    // The screening uses every sixth line of the sweeps only, while the lead counts all lines.
     let least = least.max(lead / DECIMATION[0] as f64);
     let is_worth_fitting = |own: &Screened| own.gain > least;
     if !is_far_off && !screened.iter().any(is_worth_fitting) {
