@@ -309,6 +309,9 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
         Some(found) => records::take_over(&mut fitted, found),
         None => from_kc::take_over(&mut fitted)?,
     }
+    if has_more {
+        fitted.campaign.notices.extend(notices::in_combination(&fitted.fit));
+    }
     fitted.campaign.notices.extend(notices::all_at_bounds(&fitted.fit));
     Ok(fitted)
 }

@@ -431,6 +431,39 @@ fn wishes_that_cannot_be_met_are_refused() {
     }
 }
 
+/// Transmissibilities do not change if all masses, stiffnesses and dampings grow by the same factor. The forces of K&C
+/// curves do.
+#[test]
+fn a_fit_that_needs_forces_names_the_option_that_uses_them() {
+    let folder = altered("m_corner = 490.9\n", "");
+    let manifest = folder.path().join("campaign.toml");
+    let text = fs::read_to_string(&manifest).unwrap();
+    let known_mass = "fit = false\ncomment = \"known, keep fixed\"";
+    assert_eq!(text.matches(known_mass).count(), 1);
+    let corner = "[parameters.m_corner]\nvalue = 490.9\nunit = \"kg\"\nrange = [100.0, 2000.0]\nfit = true\n\n";
+    let text = text.replace(known_mass, "fit = true");
+    fs::write(
+        &manifest,
+        text.replace("[parameters.m_wheel]", &format!("{corner}[parameters.m_wheel]")),
+    )
+    .unwrap();
+    let campaign = folder.path().to_str().unwrap();
+    let by_sweeps = fitted(&[campaign, "--starts", "1"]);
+    let mass = &by_sweeps["parameters"]["m_corner"];
+    assert_eq!(mass["stderr"], Value::Null, "{mass}");
+    assert!(
+        by_sweeps["notices"].to_string().contains("with --all-runs"),
+        "{by_sweeps}"
+    );
+    let by_all = fitted(&[campaign, "--starts", "1", "--all-runs"]);
+    let mass = &by_all["parameters"]["m_corner"];
+    let [value, stderr] = ["value", "stderr"].map(|of| mass[of].as_f64().unwrap());
+    assert!(
+        stderr < 0.03 * value && (value - 490.9).abs() < 3.0 * stderr,
+        "{value} ± {stderr} kg"
+    );
+}
+
 /// A run that only says how the axle was driven, and a mass given in grams: neither stops a fit, and both are said.
 #[test]
 fn what_is_odd_is_said() {
