@@ -94,3 +94,49 @@ pub fn within(changes: &[Vec<f64>], group: &[usize]) -> Vec<Vec<f64>> {
     };
     mixtures.into_iter().map(mixed).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rows of 0.001 to 1 that show `x - y` and `z`: `x + y` stays hidden.
+    #[test]
+    fn rows_that_show_no_more_are_not_kept() {
+        let mut shown = Shown::nothing(3);
+        for turn in 1..=1000 {
+            let (a, b) = (0.001 * f64::from(turn), f64::from(turn).cos());
+            assert!(!shown.add(vec![vec![a, -a, b]]));
+        }
+        assert!(shown.rows.len() <= 3, "{} rows", shown.rows.len());
+        let [change] = &shown.hidden()[..] else {
+            panic!("{:?}", shown.hidden());
+        };
+        assert!(
+            (change[0] - change[1]).abs() < 1e-12 && change[2].abs() < 1e-12,
+            "{change:?}"
+        );
+    }
+
+    /// Two parameters that differ by 1e-7 are told apart, but not so clearly that further rows are not needed; by 1e-12
+    /// is roundoff.
+    #[test]
+    fn a_row_that_shows_little_is_kept() {
+        for (difference, hidden) in [(1e-3, 0), (1e-7, 0), (1e-12, 1)] {
+            let mut shown = Shown::nothing(2);
+            let all = shown.add(vec![vec![1.0, 1.0], vec![1.0, 1.0 + difference]]);
+            assert_eq!(
+                (all, shown.hidden().len()),
+                (difference == 1e-3, hidden),
+                "{difference}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_group_has_those_changes_that_leave_the_others_as_they_are() {
+        let changes = [vec![1.0, 1.0, 1.0, 0.0], vec![0.0, 0.0, 1.0, 1.0]];
+        assert!(within(&changes, &[0, 1]).is_empty());
+        assert_eq!(within(&changes, &[0, 1, 2]), [changes[0].clone()]);
+        assert_eq!(within(&changes, &[0, 1, 2, 3]).len(), 2);
+    }
+}
