@@ -258,6 +258,24 @@ fn the_catalogue_applies_where_it_should() {
     insta::assert_snapshot!(table);
 }
 
+/// A list of places is made from fewer parameter sets and motions than candidates are.
+#[test]
+fn places_are_those_of_the_candidates() {
+    for (model, candidates) in OF_EFFECTS
+        .iter()
+        .filter(|(model, _)| ["axle_c", "quarter_car"].contains(&model.as_str()))
+    {
+        let checked = self::model(model);
+        for effect in effects() {
+            let name = &effect.effect().name.text;
+            let own = candidates.iter().filter(|own| own.effect == *name);
+            let mut places: Vec<&str> = own.map(|own| own.place.as_str()).collect();
+            places.dedup();
+            assert_eq!(effect.places(&checked), places, "{name} in {model}");
+        }
+    }
+}
+
 /// What a search cannot find beside an effect: the effects, at their places, that the model allows and a model with the
 /// effect refuses in every form. Most replace a term that is gone, or act at the same place in the same way. A mass
 /// that is taken from the body fits before the mass above the other axle, and not after it: at the ends of the ranges,

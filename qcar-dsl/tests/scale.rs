@@ -8,6 +8,7 @@ mod chain;
 use qcar_dsl::c;
 use qcar_dsl::check::check_text;
 use qcar_dsl::compile::{check, derive_wanted};
+use qcar_dsl::patch::Patch;
 use qcar_dsl::response::Wanted;
 use qcar_dsl::schedule::Compiled;
 use qcar_dsl::show::{Stage, show};
@@ -137,5 +138,28 @@ fn what_a_chain_does_not_show_is_found_at_any_length() {
         let found = unseen(known.replace("known param", "param"));
         assert_eq!(found.len(), 1, "{masses} masses: {found:?}");
         assert_eq!((found[0].0.len(), found[0].1), (all, all - 1));
+    }
+}
+
+/// One parameter set mostly tells where an effect applies. Beside unknown masses only ratios are determined, so that no
+/// patched model has all its parameters determined: the answer is that of all sets and motions.
+#[test]
+fn effects_apply_in_a_chain_of_unknown_masses_where_they_have_candidates() {
+    let text = chain::chain(6, true).replace("known param", "param");
+    let name = "chain.axle".to_string();
+    let chain = check(Source { name, text }, &|_, _| Err(String::new())).unwrap_or_else(|report| panic!("{report}"));
+    for (text, applies) in [
+        (include_str!("../../models/effects/bushing_relaxation.axle"), true),
+        (include_str!("../../models/effects/bump_stop.axle"), true),
+        (include_str!("../../models/effects/sliding_friction.axle"), true),
+        (include_str!("../../models/effects/offset_force.axle"), false),
+    ] {
+        let (name, text) = ("effect.axle".to_string(), text.to_string());
+        let effect = Patch::read(Source { name, text }).unwrap_or_else(|report| panic!("{report}"));
+        let candidates = effect.candidates(&chain, &|_| None);
+        let mut places: Vec<String> = candidates.into_iter().map(|own| own.place).collect();
+        places.dedup();
+        assert_eq!(effect.places(&chain), places, "{}", effect.effect().name.text);
+        assert_eq!(!places.is_empty(), applies, "{}", effect.effect().name.text);
     }
 }

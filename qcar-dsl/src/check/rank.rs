@@ -1,57 +1,71 @@
 //! Ranks and null spaces of small dense matrices, by elimination with full pivoting.
 
 /// Pivots below this fraction of the largest entry count as zero.
-const NEGLIGIBLE: f64 = 1e-9;
+pub const NEGLIGIBLE: f64 = 1e-9;
+/// Entries of null vectors up to this size are roundoff.
+pub const INSIGNIFICANT: f64 = 1e-6;
 
 /// A basis of the null space of a matrix, given by its rows. Each vector has the entry 1 in a column where the others
 /// are zero.
 pub fn null_space(rows: Vec<Vec<f64>>, columns: usize) -> Vec<Vec<f64>> {
-    let largest = rows
-        .iter()
-        .flatten()
-        .fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
-    null_space_of_scale(rows, columns, largest)
+    let largest = largest_entry(&rows);
+    eliminate(rows, columns, NEGLIGIBLE * largest).null_space
 }
 
-/// The same for a matrix with small entries, relative to a given scale.
-pub fn null_space_of_scale(mut rows: Vec<Vec<f64>>, columns: usize, largest: f64) -> Vec<Vec<f64>> {
+/// The largest absolute value of a matrix.
+pub fn largest_entry(rows: &[Vec<f64>]) -> f64 {
+    let entries = rows.iter().flatten();
+    entries.fold(0.0_f64, |largest, entry| largest.max(entry.abs()))
+}
+
+/// What an elimination finds.
+pub struct Eliminated {
+    /// Positions of the rows with the pivots, whose number is the rank.
+    pub pivots: Vec<usize>,
+    /// A basis of the null space, as [`null_space`] gives it.
+    pub null_space: Vec<Vec<f64>>,
+}
+
+/// Eliminates a matrix until all that is left is negligible.
+pub fn eliminate(mut rows: Vec<Vec<f64>>, columns: usize, negligible: f64) -> Eliminated {
     let mut free: Vec<usize> = (0..columns).collect();
     let mut bound = Vec::new();
-    let mut foremost: Vec<Option<usize>> = rows.iter().map(|row| largest_of(row)).collect();
-    while let Some((row, place)) = pivot(&rows, &foremost, bound.len()) {
-        if rows[row][place].abs() <= NEGLIGIBLE * largest {
+    let mut pivots: Vec<usize> = (0..rows.len()).collect();
+    let mut sizes: Vec<u64> = rows.iter().map(|row| largest_size(row)).collect();
+    while let Some((row, place)) = pivot(&rows, &sizes, bound.len()) {
+        if rows[row][place].abs() <= negligible {
             break;
         }
         let at = bound.len();
         rows.swap(at, row);
-        foremost.swap(at, row);
+        sizes.swap(at, row);
+        pivots.swap(at, row);
         let (above, below) = rows.split_at_mut(at + 1);
-        for (row, foremost) in below.iter_mut().zip(&mut foremost[at + 1..]) {
-            let changed = eliminate(row, &above[at], place);
-            match foremost {
-                Some(own) if !changed && *own > place => *own -= 1,
-                Some(own) if !changed && *own < place => {}
-                _ => *foremost = largest_of(row),
+        for (row, own) in below.iter_mut().zip(&mut sizes[at + 1..]) {
+            if subtract(row, &above[at], place) {
+                *own = largest_size(row);
             }
         }
         above[at] = spread(&above[at], &free, columns);
         bound.push(free.remove(place));
     }
-    free.iter()
-        .map(|&column| null_vector(&rows, &bound, column, columns))
-        .collect()
+    pivots.truncate(bound.len());
+    let null_vectors = free.iter().map(|&column| null_vector(&rows, &bound, column, columns));
+    Eliminated {
+        null_space: null_vectors.collect(),
+        pivots,
+    }
 }
 
-/// The place at which a row is largest.
-fn largest_of(row: &[f64]) -> Option<usize> {
-    let sizes = row.iter().map(|entry| size(*entry)).enumerate();
-    sizes.max_by_key(|(_, size)| *size).map(|(place, _)| place)
+/// The largest entry of the rows from a position on, given the size of the largest of each row.
+fn pivot(rows: &[Vec<f64>], sizes: &[u64], from: usize) -> Option<(usize, usize)> {
+    let row = (from..rows.len()).max_by_key(|&row| sizes[row])?;
+    let place = rows[row].iter().rposition(|&entry| size(entry) == sizes[row])?;
+    Some((row, place))
 }
 
-/// The largest entry of the rows from a position on; the place of the largest entry of each row is known.
-fn pivot(rows: &[Vec<f64>], foremost: &[Option<usize>], from: usize) -> Option<(usize, usize)> {
-    let left = (from..rows.len()).filter_map(|row| Some((row, foremost[row]?)));
-    left.max_by_key(|&(row, place)| size(rows[row][place]))
+fn largest_size(row: &[f64]) -> u64 {
+    row.iter().map(|&entry| size(entry)).max().unwrap_or_default()
 }
 
 /// In the order of magnitudes; NaN is larger than all numbers.
@@ -59,15 +73,17 @@ fn size(entry: f64) -> u64 {
     entry.abs().to_bits()
 }
 
-/// Eliminates a place of a row by a pivot row, and removes it. Returns whether that changed the others.
-fn eliminate(row: &mut Vec<f64>, pivot: &[f64], place: usize) -> bool {
-    let factor = row[place] / pivot[place];
-    if factor != 0.0 {
+/// Subtracts a multiple of a pivot row so that a place of a row vanishes, and removes that place. Returns whether it had
+/// an entry.
+fn subtract(row: &mut Vec<f64>, pivot: &[f64], place: usize) -> bool {
+    let had_entry = row[place] != 0.0;
+    if had_entry {
+        let factor = row[place] / pivot[place];
         let entries = row.iter_mut().zip(pivot);
         entries.for_each(|(entry, own)| *entry -= factor * own);
     }
     row.remove(place);
-    factor != 0.0
+    had_entry
 }
 
 /// A row of all columns, given that of those that are free.
@@ -92,7 +108,7 @@ fn null_vector(rows: &[Vec<f64>], bound: &[usize], column: usize, columns: usize
 /// The columns in which vectors have significant entries.
 pub fn support(vectors: &[Vec<f64>]) -> Vec<usize> {
     let size = vectors.first().map_or(0, Vec::len);
-    let speaks = |column: &usize| vectors.iter().any(|vector| vector[*column].abs() > 1e-6);
+    let speaks = |column: &usize| vectors.iter().any(|vector| vector[*column].abs() > INSIGNIFICANT);
     (0..size).filter(speaks).collect()
 }
 

@@ -7,12 +7,12 @@ mod observable;
 mod forces;
 // Responses of a model, with their derivatives by the parameters.
 mod responses;
+// Changes of parameters that responses do not show.
+mod hidden;
 
 use std::collections::BTreeSet;
 
-use num_complex::Complex64;
-
-use crate::check::rank::{null_space_of_scale, support};
+use crate::check::rank::support;
 use crate::check::sample::{Kind, Point};
 use crate::check::{Checked, Unseen};
 use crate::derive::linear::{Linear, linearise};
@@ -22,7 +22,7 @@ use crate::expr::{Expr, Graph, Symbol};
 use crate::model::{Model, Quantity, Signal, Term};
 
 use forces::Forces;
-use observable::Observable;
+use hidden::{Shown, within};
 use responses::Derived;
 
 /// Number of motions at which a nonlinear model is evaluated first, and if that leaves parameters undetermined: few
@@ -30,14 +30,10 @@ use responses::Derived;
 const FEW_MOTIONS: u64 = 4;
 const MANY_MOTIONS: u64 = 64;
 
-/// Factor on the smallest pivot if only some of the rows are known, since the largest entry of all is unknown then.
-const CLEARLY: f64 = 1e3;
-
-/// A parameter set, and the derivatives there: a row for each response, relative to the response and the parameter.
+/// A parameter set, and a basis of the changes of the parameters, relative to them, that no response shows there.
 struct ParameterSet {
     parameters: Vec<f64>,
-    rows: Vec<Vec<f64>>,
-    scale: f64,
+    hidden: Vec<Vec<f64>>,
 }
 
 /// A model with its undetermined parameters and warnings about them; unchanged if they are known.
@@ -45,9 +41,7 @@ pub fn with_identifiability(model: Checked) -> Checked {
     if model.has_identifiability() {
         return model;
     }
-    let mut graph = model.graph.clone();
-    let motion = motion::derive(&model, &mut graph);
-    let linear = linearise(&model, &motion, &mut graph);
+    let (graph, motion, linear) = equations(&model);
     with_derived_identifiability(model, graph, &motion, &linear)
 }
 
@@ -56,18 +50,46 @@ pub fn with_derived_identifiability(model: Checked, graph: Graph, motion: &Motio
     if model.has_identifiability() {
         return model;
     }
-    let (unseen, warnings) = parameters_are_seen(&model, graph, motion, linear).into_iter().unzip();
+    let found = with_responses(&model, graph, motion, linear, |derived, constant| {
+        let mut found = unseen_by_responses(derived);
+        found.extend(alike_constants(derived, constant));
+        found
+    });
+    let (unseen, warnings) = found.into_iter().unzip();
     model.with_unseen(unseen, warnings)
 }
 
-/// Parameters that no output depends on, and groups that outputs determine only in combination, each with a warning:
-/// such a model has a response, but cannot be fitted.
-fn parameters_are_seen(
+/// The undetermined groups at a single parameter set, which costs a fraction of [`with_identifiability`]. Each of the
+/// groups that this finds consists of some of these and hides as many combinations at most. `None` if that is not
+/// certain, since a group hides more than one combination.
+pub fn unseen_at_one_set(model: &Checked) -> Option<Vec<Unseen>> {
+    let (graph, motion, linear) = equations(model);
+    let found = with_responses(model, graph, &motion, &linear, |derived, constant| {
+        let mut found = described(model, derived.estimated, &[first_set(derived)]);
+        found.extend(alike_constants(derived, constant));
+        found
+    });
+    let groups: Vec<Unseen> = found.into_iter().map(|(group, _)| group).collect();
+    let hides_one = |group: &Unseen| group.parameters.len() - group.seen == 1;
+    groups.iter().all(hides_one).then_some(groups)
+}
+
+fn equations(model: &Checked) -> (Graph, Motion, Linear) {
+    let mut graph = model.graph.clone();
+    let motion = motion::derive(model, &mut graph);
+    let linear = linearise(model, &motion, &mut graph);
+    (graph, motion, linear)
+}
+
+/// Looks at the responses of a model with given equations; also given the parameters of constant forces whose mean is
+/// seen.
+fn with_responses<T>(
     model: &Checked,
     mut graph: Graph,
     motion: &Motion,
     linear: &Linear,
-) -> Vec<(Unseen, Diagnostic)> {
+    look: impl FnOnce(&Derived, &BTreeSet<Symbol>) -> T,
+) -> T {
     let constant = constant_forces(model);
     let estimated = estimated(model, &constant);
     let forces = Forces::of(model, motion, &mut graph, &estimated);
@@ -79,27 +101,29 @@ fn parameters_are_seen(
         forces,
         estimated: &estimated,
     };
-    let responses = unseen_by_responses(&derived);
-    responses
-        .into_iter()
-        .chain(alike_constants(&derived, &constant))
-        .collect()
+    look(&derived, &constant)
 }
 
-/// The parameters, of those estimated, that the responses do not determine.
+/// Parameters, of those estimated, that no output depends on, and groups that outputs determine only in combination,
+/// each with a warning: such a model has a response, but cannot be fitted.
 fn unseen_by_responses(derived: &Derived) -> Vec<(Unseen, Diagnostic)> {
-    let (model, estimated) = (derived.model, derived.estimated);
-    let set = |kind, seed, motions, enough| set(derived, Point::new(model, kind, seed), motions, enough);
-    if sees_all(&set(Kind::Plain, 1, FEW_MOTIONS, estimated.len()), estimated.len()) {
-        return vec![];
-    }
-    let first = set(Kind::Plain, 1, FEW_MOTIONS, usize::MAX);
-    if first.rows.is_empty() {
+    let first = first_set(derived);
+    if first.hidden.is_empty() {
         return vec![];
     }
     // Parameters must be undetermined at all sets, since a law may be out of its range at one of them.
-    let others = [(Kind::Plain, 2), (Kind::Declared, 3)].map(|(kind, seed)| set(kind, seed, MANY_MOTIONS, usize::MAX));
-    described(model, estimated, [first].into_iter().chain(others).collect())
+    let others = [(Kind::Plain, 2), (Kind::Declared, 3)];
+    let others = others.map(|(kind, seed)| set(derived, Point::new(derived.model, kind, seed), MANY_MOTIONS));
+    let sets: Vec<ParameterSet> = [first].into_iter().chain(others).collect();
+    described(derived.model, derived.estimated, &sets)
+}
+
+/// The first parameter set. Without any finite response, nothing can be said, and it hides nothing.
+fn first_set(derived: &Derived) -> ParameterSet {
+    let first = set(derived, Point::new(derived.model, Kind::Plain, 1), FEW_MOTIONS);
+    let is_blind = first.hidden.len() == derived.estimated.len();
+    let hidden = if is_blind { vec![] } else { first.hidden };
+    ParameterSet { hidden, ..first }
 }
 
 /// The constant forces that act alike, so that a mean shows their sum alone.
@@ -113,28 +137,28 @@ fn alike_constants(derived: &Derived, constant: &BTreeSet<Symbol>) -> Vec<(Unsee
     }
     let set = |(kind, seed)| {
         let point = Point::new(model, kind, seed);
-        let value = |&index: &u16| point.leaf(Symbol::Parameter(index));
+        let mut shown = Shown::nothing(forces.len());
+        (0..FEW_MOTIONS).any(|motion| shown.add(derived.changes_by(&forces, point.moved(motion))));
         ParameterSet {
-            parameters: forces.iter().map(value).collect(),
-            rows: (0..FEW_MOTIONS)
-                .flat_map(|motion| derived.changes_by(&forces, point.moved(motion)))
-                .collect(),
-            scale: 1.0,
+            parameters: values(&forces, point),
+            hidden: shown.hidden(),
         }
     };
     let sets = [(Kind::Plain, 1), (Kind::Plain, 2), (Kind::Declared, 3)].map(set);
-    described(model, &forces, sets.into())
+    described(model, &forces, &sets)
 }
 
 /// The groups of these parameters that are undetermined at all sets, each with a warning.
-fn described(model: &Model, parameters: &[u16], sets: Vec<ParameterSet>) -> Vec<(Unseen, Diagnostic)> {
-    let hidden = null_space_of_scale(sets[0].rows.clone(), parameters.len(), sets[0].scale);
-    let groups = hidden.iter().map(|change| support(std::slice::from_ref(change)));
-    let groups = groups.filter(|group| sets.iter().all(|set| hidden_changes(set, group) > 0));
+fn described(model: &Model, parameters: &[u16], sets: &[ParameterSet]) -> Vec<(Unseen, Diagnostic)> {
+    let groups = sets[0]
+        .hidden
+        .iter()
+        .map(|change| support(std::slice::from_ref(change)));
+    let groups = groups.filter(|group| sets.iter().all(|set| !within(&set.hidden, group).is_empty()));
     let groups = merged(groups.collect());
     groups
         .iter()
-        .map(|group| describe(model, parameters, group, &sets))
+        .map(|group| describe(model, parameters, group, sets))
         .collect()
 }
 
@@ -175,39 +199,27 @@ fn constant_forces(model: &Model) -> BTreeSet<Symbol> {
     contents.filter(is_constant).flatten().collect()
 }
 
-/// True if rows determine all parameters with a wide margin, so that further rows are not needed.
-fn sees_all(some: &ParameterSet, parameters: usize) -> bool {
-    null_space_of_scale(some.rows.clone(), parameters, CLEARLY * some.scale).is_empty()
+/// The values of parameters.
+fn values(parameters: &[u16], point: Point) -> Vec<f64> {
+    let value = |&index: &u16| point.leaf(Symbol::Parameter(index));
+    parameters.iter().map(value).collect()
 }
 
-/// The rows of this number of motions; fewer if `enough` responses suffice.
-fn set(derived: &Derived, point: Point, motions: u64, enough: usize) -> ParameterSet {
-    let parameters: Vec<f64> = derived
-        .estimated
-        .iter()
-        .map(|&index| point.leaf(Symbol::Parameter(index)))
-        .collect();
-    let rows: Vec<Vec<f64>> = derived
-        .seen(point, motions, enough)
-        .into_iter()
-        .flat_map(|Observable { value, gradient }| {
-            let size = value.norm().max(f64::MIN_POSITIVE);
-            let changes = || gradient.iter().zip(&parameters);
-            let relative =
-                |part: fn(&Complex64) -> f64| -> Vec<f64> { changes().map(|(by, p)| part(by) * p / size).collect() };
-            [relative(|z| z.re), relative(|z| z.im)]
-        })
-        .filter(|row| row.iter().all(|entry| entry.is_finite()) && row.iter().any(|entry| *entry != 0.0))
-        .collect();
-    let scale = rows
-        .iter()
-        .flatten()
-        .fold(0.0_f64, |scale, entry| scale.max(entry.abs()));
-    ParameterSet {
-        parameters,
-        rows,
-        scale,
-    }
+/// A parameter set in up to this number of motions.
+fn set(derived: &Derived, point: Point, motions: u64) -> ParameterSet {
+    let parameters = values(derived.estimated, point);
+    let mut shown = Shown::nothing(parameters.len());
+    derived.see(point, motions, |seen| {
+        let rows = seen.into_iter().flat_map(|response| response.relative_to(&parameters));
+        shown.add(rows.filter(|row| is_usable(row)).collect())
+    });
+    let hidden = shown.hidden();
+    ParameterSet { parameters, hidden }
+}
+
+/// True for a row of numbers that are not all zero.
+fn is_usable(row: &[f64]) -> bool {
+    row.iter().all(|entry| entry.is_finite()) && row.iter().any(|entry| *entry != 0.0)
 }
 
 /// Merges groups with a common parameter.
@@ -224,16 +236,6 @@ fn merged(groups: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
     merged
 }
 
-/// Number of independent changes of a group that the responses at a set do not show.
-fn hidden_changes(set: &ParameterSet, group: &[usize]) -> usize {
-    let rows: Vec<Vec<f64>> = set
-        .rows
-        .iter()
-        .map(|row| group.iter().map(|&column| row[column]).collect())
-        .collect();
-    null_space_of_scale(rows, group.len(), set.scale).len()
-}
-
 fn describe(model: &Model, estimated: &[u16], group: &[usize], sets: &[ParameterSet]) -> (Unseen, Diagnostic) {
     let parameter = |column: &usize| &model.parameters[usize::from(estimated[*column])];
     let named: Vec<_> = group
@@ -241,7 +243,7 @@ fn describe(model: &Model, estimated: &[u16], group: &[usize], sets: &[Parameter
         .map(parameter)
         .map(|p| (p.declared.span, p.name.as_str()))
         .collect();
-    let hidden = sets.iter().map(|set| hidden_changes(set, group)).min();
+    let hidden = sets.iter().map(|set| within(&set.hidden, group).len()).min();
     let unseen = Unseen {
         parameters: named.iter().map(|(_, name)| name.to_string()).collect(),
         seen: group.len() - hidden.unwrap_or_default(),
@@ -257,13 +259,10 @@ fn describe(model: &Model, estimated: &[u16], group: &[usize], sets: &[Parameter
 fn combination(group: &[usize], sets: &[ParameterSet], named: &[(crate::source::Span, &str)]) -> Option<String> {
     let [(_, a), (_, b)] = named else { return None };
     let unseen = |set: &ParameterSet| {
-        let rows = set
-            .rows
-            .iter()
-            .map(|row| group.iter().map(|&column| row[column]).collect())
-            .collect();
-        let null = null_space_of_scale(rows, 2, set.scale);
-        let change = null.first().map_or([0.0; 2], |change| [change[0], change[1]]);
+        let hidden = within(&set.hidden, group);
+        let change = hidden
+            .first()
+            .map_or([0.0; 2], |change| [change[group[0]], change[group[1]]]);
         let absolute = [
             change[0] * set.parameters[group[0]],
             change[1] * set.parameters[group[1]],

@@ -202,8 +202,10 @@ impl Patch {
                     return false;
                 };
                 tree.axle.doc.clear();
-                let accepts = || accepted_model(&tree, &before).is_ok();
-                *accepted.entry(tree.file().to_string()).or_insert_with(accepts)
+                let text = tree.file().to_string();
+                *accepted
+                    .entry(text.clone())
+                    .or_insert_with(|| is_accepted(&tree, text, &before))
             })
         };
         let places = place::fitting(&base, &roles, &self.effect.pattern).into_iter();
@@ -395,27 +397,42 @@ impl Patched {
 /// The patched model, if the compiler accepts it and its outputs determine its parameters as far as those of the model
 /// before.
 fn accepted_model(tree: &ModelTree, before: &Checked) -> Result<Checked, Report> {
-    let text = Source {
-        name: format!("{}.axle", tree.axle.name.text),
-        text: tree.file().to_string(),
-    };
-    let model = check_text(text, &|_, path| Err(format!("{path} is not part of a patched model")))?;
+    determined(valid_model(tree, tree.file().to_string(), before)?, before)
+}
+
+/// Whether there is such a model, given the text of its tree; mostly found from responses at a single parameter set.
+fn is_accepted(tree: &ModelTree, text: String, before: &Checked) -> bool {
+    valid_model(tree, text, before).is_ok_and(|model| {
+        let groups = identifiability::unseen_at_one_set(&model);
+        groups.is_some_and(|groups| !hide_more(&groups, &model, before)) || determined(model, before).is_ok()
+    })
+}
+
+/// The patched model with the given text, if it breaks no rule; as much of it is estimated as before.
+fn valid_model(tree: &ModelTree, text: String, before: &Checked) -> Result<Checked, Report> {
+    let name = format!("{}.axle", tree.axle.name.text);
+    let model = check_text(Source { name, text }, &|_, path| {
+        Err(format!("{path} is not part of a patched model"))
+    })?;
     let estimated = before.parameters.iter().filter(|own| !own.known);
-    let model = model.estimating(estimated.map(|own| own.name.as_str()));
+    Ok(model.estimating(estimated.map(|own| own.name.as_str())))
+}
+
+/// The patched model, if its outputs determine its parameters as far as those of the model before.
+fn determined(model: Checked, before: &Checked) -> Result<Checked, Report> {
     let model = identifiability::with_identifiability(model);
-    if model
-        .unseen()
-        .iter()
-        .any(|own| hides_more(own, &model, before.unseen()))
-    {
-        let mut report = model.warnings().clone();
-        report
-            .diagnostics
-            .iter_mut()
-            .for_each(|found| found.severity = Severity::Error);
-        return Err(report);
+    if !hide_more(model.unseen(), &model, before) {
+        return Ok(model);
     }
-    Ok(model)
+    let mut report = model.warnings().clone();
+    let all = report.diagnostics.iter_mut();
+    all.for_each(|found| found.severity = Severity::Error);
+    Err(report)
+}
+
+/// True if one of these groups of a patched model hides more than the model before.
+fn hide_more(groups: &[Unseen], model: &Checked, before: &Checked) -> bool {
+    groups.iter().any(|group| hides_more(group, model, before.unseen()))
 }
 
 /// True if a group has more undetermined combinations than the groups of the unpatched model in it, apart from their

@@ -47,11 +47,6 @@ impl ModelTree {
         }
     }
 
-    /// The elements.
-    pub fn elements(&self) -> Vec<&Element> {
-        self.elements.iter().collect()
-    }
-
     /// The directions, in the order of the text.
     pub fn directions(&self) -> impl Iterator<Item = &Direction> {
         self.axle.body.iter().filter_map(|statement| match statement {

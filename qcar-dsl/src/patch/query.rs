@@ -5,7 +5,7 @@ use crate::diagnostic::{Diagnostic, effects};
 use crate::expr::Symbol;
 use crate::front::resolve::options::select;
 use crate::front::resolve::resolve;
-use crate::front::syntax::{Expression, Let, Name, Statement};
+use crate::front::syntax::{Axle, AxleKind, Expression, Let, Name, Statement};
 use crate::model::{Default, Model};
 
 /// Known values of the model's parameters and of its [reference values](super::Scale), by name.
@@ -17,13 +17,20 @@ pub fn as_quantity(name: &str, value: &Expression) -> Statement {
     Statement::Let(Let { name, value, doc })
 }
 
-/// The model with further derived quantities, and the diagnostics about them.
+/// The parameters and derived quantities of a model with further quantities, and the diagnostics about these. Parts of a
+/// direction are left out, since no quantity can use them.
 pub fn with_quantities(base: &ModelTree, quantities: Vec<Statement>) -> (Model, Vec<Diagnostic>) {
-    let mut axle = base.axle.clone();
-    axle.body.extend(quantities);
+    let own = base.axle.body.iter();
+    let own = own.filter(|statement| !matches!(statement, Statement::Direction(_)));
+    let axle = Axle {
+        kind: AxleKind::Plain,
+        name: base.axle.name.clone(),
+        doc: String::new(),
+        body: own.cloned().chain(quantities).collect(),
+    };
     let mut found = Vec::new();
     let member = select(&axle, None, &mut found);
-    let (model, more) = resolve(&axle, &member, &base.elements());
+    let (model, more) = resolve(&axle, &member, &[]);
     found.extend(more);
     // The added quantities are unused on purpose.
     found.retain(|diagnostic| !effects::is_about_use(diagnostic));

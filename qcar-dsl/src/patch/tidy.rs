@@ -1,5 +1,6 @@
 //! Removes declarations that a patch leaves unused: the coefficient of a replaced term, or a point without links.
 
+use std::cell::LazyCell;
 use std::collections::BTreeSet;
 
 use super::model_tree::ModelTree;
@@ -9,12 +10,13 @@ use crate::front::syntax::{Dotted, Expression, ExpressionKind, ParameterDefault,
 /// Removes unused parameters, derived quantities and points, repeatedly until all are used. Points that were unused in
 /// `base` stay: effects find places by them.
 pub fn tidy(tree: &mut ModelTree, base: &ModelTree) {
-    let spare = unused_points(base);
+    let spare = LazyCell::new(|| unused_points(base));
+    let is_spare = |statement: &Statement| matches!(statement, Statement::Point(name, _) if spare.contains(&name.text));
     loop {
         let used = used(tree);
         let mut removed = 0;
         let mut keep = |statement: &Statement| {
-            let kept = is_used(statement, &used) || is_point_among(statement, &spare);
+            let kept = is_used(statement, &used) || is_spare(statement);
             removed += usize::from(!kept);
             kept
         };
@@ -39,10 +41,6 @@ fn unused_points(base: &ModelTree) -> BTreeSet<String> {
         _ => None,
     };
     unused.filter_map(point).collect()
-}
-
-fn is_point_among(statement: &Statement, names: &BTreeSet<String>) -> bool {
-    matches!(statement, Statement::Point(name, _) if names.contains(&name.text))
 }
 
 fn is_used(statement: &Statement, used: &BTreeSet<String>) -> bool {

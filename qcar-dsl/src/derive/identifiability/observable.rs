@@ -29,4 +29,14 @@ impl Observable {
             gradient: changes.map(|(a, b)| (a - value * b) / other.value).collect(),
         }
     }
+
+    /// Rows of the real and the imaginary part of its derivatives, relative to its size and to the parameters.
+    pub fn relative_to(&self, parameters: &[f64]) -> [Vec<f64>; 2] {
+        let size = self.value.norm().max(f64::MIN_POSITIVE);
+        let row = |part: fn(&Complex64) -> f64| -> Vec<f64> {
+            let changes = self.gradient.iter().zip(parameters);
+            changes.map(|(by, p)| part(by) * p / size).collect()
+        };
+        [row(|z| z.re), row(|z| z.im)]
+    }
 }

@@ -46,29 +46,24 @@ pub struct Derived<'a> {
 }
 
 impl Derived<'_> {
-    /// Everything that can be observed at one parameter set: the responses of outputs and channels to each input and,
-    /// for nonlinear laws, the change of the force itself. Evaluates up to `motions` motions, and stops as soon as
-    /// there are `enough` values.
-    pub fn seen(&self, point: Point, motions: u64, enough: usize) -> Vec<Observable> {
+    /// Everything that can be observed at one parameter set, in parts: the responses of outputs and channels to each
+    /// input and, for nonlinear laws, the change of the force itself. Evaluates up to this number of motions, until
+    /// there is `enough`.
+    pub fn see(&self, point: Point, motions: u64, mut enough: impl FnMut(Vec<Observable>) -> bool) {
         let has_clock = self.model.parameters.iter().any(|parameter| parameter.clock);
         let motions = if self.forces.bends || has_clock { motions } else { 1 };
         let frequencies = if point.kind == Kind::Plain { PLAIN } else { DECLARED };
-        let mut seen = Vec::new();
-        for motion in 0..motions {
+        let mut in_motion = |motion| {
             let point = point.moved(motion);
-            let enough = self.evaluated(point, |values| {
+            let in_responses = |values: &Values| {
                 let matrices = Matrices::of(self, values);
-                frequencies.into_iter().any(|frequency| {
-                    matrices.look(frequency, &mut seen);
-                    seen.len() >= enough
-                })
-            });
-            if enough {
-                return seen;
-            }
-            seen.extend(self.forces.seen(self.graph, &point, self.estimated.len()));
-        }
-        seen
+                frequencies
+                    .into_iter()
+                    .any(|frequency| enough(matrices.look(frequency)))
+            };
+            self.evaluated(point, in_responses) || enough(self.forces.seen(self.graph, &point, self.estimated.len()))
+        };
+        (0..motions).any(&mut in_motion);
     }
 
     /// The derivatives of the rates and the outputs by these parameters at a point, each relative to the largest one and
@@ -144,11 +139,12 @@ impl<'a> Matrices<'a> {
         }
     }
 
-    /// Adds the responses at an angular frequency, rad/s.
-    fn look(&self, frequency: f64, seen: &mut Vec<Observable>) {
+    /// The responses at an angular frequency, rad/s.
+    fn look(&self, frequency: f64) -> Vec<Observable> {
         let model = self.derived.model;
+        let mut seen = Vec::new();
         for (source, excited) in self.excite(frequency) {
-            add_relative(excited.outputs.clone(), seen);
+            add_relative(excited.outputs.clone(), &mut seen);
             let signal = |signal| self.signal(signal, source, &excited, frequency);
             let ratios = model.channels.iter().filter_map(|channel| {
                 let above = signal(&channel.numerator)?;
@@ -157,8 +153,9 @@ impl<'a> Matrices<'a> {
                     Reference::Force(place) => (source == ExcitationSource::Force(*place)).then_some(above),
                 }
             });
-            add_relative(ratios.collect(), seen);
+            add_relative(ratios.collect(), &mut seen);
         }
+        seen
     }
 
     /// The response to each excitation of unit amplitude.
