@@ -3,6 +3,7 @@
 use qcar_runtime::model::Model;
 use qcar_runtime::response::periodic::{Drive, Periodic};
 use qcar_runtime::simulate::{Accuracy, Between, Reading, Recorded, replay};
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
 use super::support::strut::{Parts, Strut};
@@ -70,7 +71,12 @@ fn dry_friction_shows_the_harmonics_that_integration_finds() {
     let model = Strut::new(DRY);
     let periodic = Periodic::new(&model, 0, 15);
     let drives: Vec<Drive> = (0..60).map(|k| drive(1.4 * 1.05f64.powi(k), 0.1)).collect();
-    for (drive, cycle) in drives.iter().zip(periodic.walk(&P, &drives, &[0, 1], &[])).step_by(20) {
+    let all = BTreeSet::from_iter(0..drives.len());
+    for (drive, cycle) in drives
+        .iter()
+        .zip(periodic.walk(&P, &drives, &all, &[0, 1], &[]))
+        .step_by(20)
+    {
         assert!(cycle.converged);
         let expected = integrated(&model, &P, drive, 30);
         for (found, expected) in (0..2).map(|output| cycle.output(output)).zip(expected) {
@@ -83,12 +89,43 @@ fn dry_friction_shows_the_harmonics_that_integration_finds() {
     }
 }
 
+/// The steps of the search are longer, and its results the same.
+#[test]
+fn the_responses_of_some_lines_are_those_of_all() {
+    let model = Strut::new(DRY);
+    let periodic = Periodic::new(&model, 0, 5);
+    let drives: Vec<Drive> = (0..60).map(|k| drive(1.4 * 1.05f64.powi(k), 0.1)).collect();
+    let walk = |of: BTreeSet<usize>| periodic.walk(&P, &drives, &of, &[0, 1], &[vec![0]]);
+    let (all, some) = (
+        walk(BTreeSet::from_iter(0..60)),
+        walk(BTreeSet::from_iter((0..60).step_by(6))),
+    );
+    assert_eq!(some.len(), 10);
+    for (one, same) in some.iter().zip(all.iter().step_by(6)) {
+        assert!(one.converged && same.converged);
+        for output in 0..2 {
+            let pairs = [
+                (one.output(output), same.output(output)),
+                (one.slope(0, output), same.slope(0, output)),
+            ];
+            for (one, same) in pairs {
+                let scale = same.iter().fold(0.0_f64, |scale, value| scale.max(value.norm()));
+                assert!(
+                    one.iter().zip(same).all(|(a, b)| (a - b).norm() < 1e-5 * scale),
+                    "{one:?} {same:?}"
+                );
+            }
+        }
+    }
+}
+
 #[test]
 fn a_replayed_sine_settles_to_the_cycle_of_harmonic_balance() {
     let (model, per_period, periods) = (Strut::new(DRY), 270, 40);
     // The balance is walked to: each frequency begins with the cycle of the one before.
     let walk: Vec<Drive> = (0..21).map(|k| drive(1.4 * 1.05f64.powi(k), 0.1)).collect();
-    let cycles = Periodic::new(&model, 0, 15).walk(&P, &walk, &[0, 1], &[]);
+    let all = BTreeSet::from_iter(0..walk.len());
+    let cycles = Periodic::new(&model, 0, 15).walk(&P, &walk, &all, &[0, 1], &[]);
     let (drive, cycle) = (walk[20], &cycles[20]);
     assert!(cycle.converged);
     let rate = drive.frequency * f64::from(per_period);

@@ -110,49 +110,68 @@ impl<'m> Periodic<'m> {
         groups: &[Vec<usize>],
         start: Option<&[f64]>,
     ) -> Cycle {
-        self.cycle_of(&mut self.balance(p), drive, &each_once(outputs), groups, start)
+        let mut balance = self.balance(p);
+        let found = self.settled(&mut balance, drive, start);
+        self.response(&mut balance, found, &each_once(outputs), groups)
     }
 
-    /// The same with an existing balance, which may have had another drive before.
-    fn cycle_of(
-        &self,
-        balance: &mut Balance,
-        drive: &Drive,
-        outputs: &[usize],
-        groups: &[Vec<usize>],
-        start: Option<&[f64]>,
-    ) -> Cycle {
+    /// The coefficients of the states for a drive, and true if their search converged. The balance may have had another
+    /// drive before.
+    fn settled(&self, balance: &mut Balance, drive: &Drive, start: Option<&[f64]>) -> (Vec<f64>, bool) {
         let rest = vec![0.0; self.states.len() * self.basis.terms()];
         self.drive(balance, drive);
-        let (mut x, mut converged) = balance.solve(start.unwrap_or(&rest));
-        if !converged {
-            (x, converged) = self.climb(balance, drive, &rest);
+        let (x, converged) = balance.solve(start.unwrap_or(&rest));
+        if converged {
+            (x, converged)
+        } else {
+            self.climb(balance, drive, &rest)
         }
-        balance.sample(&x);
+    }
+
+    /// The response with these coefficients.
+    fn response(
+        &self,
+        balance: &mut Balance,
+        (coefficients, converged): (Vec<f64>, bool),
+        outputs: &[usize],
+        groups: &[Vec<usize>],
+    ) -> Cycle {
+        balance.sample(&coefficients);
         let mut series = balance.outputs(outputs).as_slice().to_vec();
         if !groups.is_empty() {
             series.extend_from_slice(balance.slopes(outputs, groups).as_slice());
         }
         Cycle {
-            coefficients: x,
+            coefficients,
             converged,
             outputs: outputs.to_vec(),
             harmonics: self.basis.harmonics(&series),
         }
     }
 
-    /// The responses to drives of increasing frequency. The search for each starts from the response at the next higher
-    /// frequency.
+    /// The responses to those drives whose positions are in `of`, in ascending order, of drives of increasing frequency.
+    /// The search for each drive starts from the response at the next higher frequency, of which one lies halfway between
+    /// each two of these.
     ///
     /// At high frequencies masses hardly move and laws are nearly linear, so the search converges there and continues
     /// downwards. From rest, it would often fail at low frequencies.
-    pub fn walk(&self, p: &[f64], drives: &[Drive], outputs: &[usize], groups: &[Vec<usize>]) -> Vec<Cycle> {
+    pub fn walk(
+        &self,
+        p: &[f64],
+        drives: &[Drive],
+        of: &BTreeSet<usize>,
+        outputs: &[usize],
+        groups: &[Vec<usize>],
+    ) -> Vec<Cycle> {
         let (mut balance, outputs) = (self.balance(p), each_once(outputs));
-        let mut cycles: Vec<Cycle> = Vec::with_capacity(drives.len());
-        for drive in drives.iter().rev() {
-            let start = cycles.last().map(|cycle| cycle.coefficients.as_slice());
-            let cycle = self.cycle_of(&mut balance, drive, &outputs, groups, start);
-            cycles.push(cycle);
+        let mut cycles: Vec<Cycle> = Vec::with_capacity(of.len());
+        let mut last: Option<Vec<f64>> = None;
+        for place in stops(of).into_iter().rev() {
+            let found = self.settled(&mut balance, &drives[place], last.as_deref());
+            last = Some(found.0.clone());
+            if of.contains(&place) {
+                cycles.push(self.response(&mut balance, found, &outputs, groups));
+            }
         }
         cycles.reverse();
         cycles
@@ -200,6 +219,13 @@ impl<'m> Periodic<'m> {
             _ => 0.0,
         })
     }
+}
+
+/// These positions, and one halfway between each two that are not neighbours. From one line of coarse data to the next,
+/// a resonance is often too far for the search; from half the way it is not.
+fn stops(of: &BTreeSet<usize>) -> BTreeSet<usize> {
+    let halfway = of.iter().zip(of.iter().skip(1)).map(|(low, high)| (low + high) / 2);
+    of.iter().copied().chain(halfway).collect()
 }
 
 /// The requested outputs in ascending order, without duplicates.

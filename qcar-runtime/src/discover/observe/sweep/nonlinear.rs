@@ -1,5 +1,7 @@
 //! Predicts sweeps by a nonlinear model: harmonics of its periodic response at each frequency and measured amplitude.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use nalgebra::Complex;
 
 use super::excitation;
@@ -58,7 +60,11 @@ pub fn sweep(
     }
     let outputs: Vec<usize> = readings.iter().map(|reading| reading.output).collect();
     let groups: Vec<Vec<usize>> = free.iter().map(|free| values.tied_to(free.parameter)).collect();
-    let cycles = Periodic::new(model, excitation, HARMONICS).walk(values.as_slice(), &drives, &outputs, &groups);
+    // Coarse data leave most lines out.
+    let compared: BTreeSet<usize> = readings.iter().flat_map(|own| own.lines.iter().copied()).collect();
+    let periodic = Periodic::new(model, excitation, HARMONICS);
+    let found = periodic.walk(values.as_slice(), &drives, &compared, &outputs, &groups);
+    let cycles: BTreeMap<usize, Cycle> = compared.into_iter().zip(found).collect();
     let predict = |reading: &Reading| reading.prediction(&drives, &cycles, free.len());
     Ok(readings.iter().map(predict).collect())
 }
@@ -76,7 +82,7 @@ struct Reading<'a> {
 }
 
 impl Reading<'_> {
-    fn prediction(&self, drives: &[Drive], cycles: &[Cycle], free: usize) -> Prediction {
+    fn prediction(&self, drives: &[Drive], cycles: &BTreeMap<usize, Cycle>, free: usize) -> Prediction {
         let Kind::Harmonic(harmonic) = self.series.kind else {
             unreachable!("a sweep has no other series")
         };
@@ -85,13 +91,13 @@ impl Reading<'_> {
             let omega = std::f64::consts::TAU * drive.frequency * harmonic as f64;
             Complex::new(0.0, omega).powi(self.power) / drive.amplitude
         };
-        let value = |&line: &usize| cycles[line].output(self.output)[harmonic] * scale(line);
+        let value = |&line: &usize| cycles[&line].output(self.output)[harmonic] * scale(line);
         let slope = |k: usize| {
-            let along = |&line: &usize| cycles[line].slope(k, self.output)[harmonic] * scale(line);
+            let along = |&line: &usize| cycles[&line].slope(k, self.output)[harmonic] * scale(line);
             self.lines.iter().map(along).collect()
         };
         let by_drive = |&line: &usize| {
-            let moved = cycles[line].louder(self.output)[harmonic] - cycles[line].output(self.output)[harmonic];
+            let moved = cycles[&line].louder(self.output)[harmonic] - cycles[&line].output(self.output)[harmonic];
             moved * scale(line)
         };
         Prediction {
