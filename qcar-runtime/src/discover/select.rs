@@ -218,7 +218,8 @@ fn attempt(mut sets: Vec<Set>, evidence: &Evidence, progress: Progress<'_>) -> O
     Some(Searched { discovery, sets, found })
 }
 
-/// Learns a law if the answer needs one, and replaces the findings by it if it is certainly more probable. `found` is
+/// Learns a law if the answer needs one, and replaces the findings by it if it is certainly more probable or explains
+/// what they leave. `found` is
 /// the position of the set of the answer.
 fn compare_with_law(
     discovery: &mut Discovery,
@@ -241,7 +242,7 @@ fn compare_with_law(
         let law = law.for_base(sets, evidence, progress);
         let law = law.filter(|law| learn::is_supported(law, base, evidence));
         let is_certain = |law: &Set| probabilities(&[found, law], evidence)[1] > evidence.numbers.certain();
-        let law = law.filter(is_certain);
+        let law = law.filter(|law| is_certain(law) || explains_instead(law, found, base, evidence));
         let law = law.filter(|law| contradicts(law, found, evidence));
         discovery.prefer(law.map(|law| learn::summary(base, law, evidence)));
     }
@@ -382,6 +383,13 @@ fn contradicts(law: &Set, found: &Set, evidence: &Evidence) -> bool {
     let named: Vec<&str> = found.named().map(|own| own.at.as_str()).collect();
     let agrees = law.named().all(|own| named.contains(&own.at.as_str()));
     !agrees || explained_share(found, law, evidence) >= GREATER_PART
+}
+
+/// True if a learned law explains nearly all of the excess residual, and the named effects leave too much of it to be an
+/// explanation. Their evidence may be larger even so, because the discrepancy accounts for the rest.
+fn explains_instead(law: &Set, found: &Set, base: &Set, evidence: &Evidence) -> bool {
+    explained_share(base, found, evidence) < evidence.numbers.explained()
+        && explained_share(base, law, evidence) >= evidence.numbers.certain()
 }
 
 /// True if a learned law must be tried against the answer: the answer has several effects, leaves a significant part of
