@@ -219,8 +219,7 @@ fn attempt(mut sets: Vec<Set>, evidence: &Evidence, progress: Progress<'_>) -> O
 }
 
 /// Learns a law if the answer needs one, and replaces the findings by it if it is certainly more probable or explains
-/// what they leave. `found` is
-/// the position of the set of the answer.
+/// what they leave. `found` is the position of the set of the answer.
 fn compare_with_law(
     discovery: &mut Discovery,
     found: usize,
