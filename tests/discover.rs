@@ -775,6 +775,16 @@ fn a_base_model_is_compared_with_the_same_sensors() {
     assert!(answer["gap"]["held_out"]["before"].as_f64() > Some(3.0), "{answer}");
 }
 
+/// The whole campaign of the test above, where such sensors would dismiss the effect.
+#[test]
+#[ignore = "a whole search; .ci/run runs it"]
+fn inaccurate_sensors_of_the_base_model_do_not_dismiss_an_effect() {
+    let answer = of_matrix(99, "hardware bushing_relaxation@top_mount seed 99");
+    assert_eq!(answer["verdict"], "found", "{answer}");
+    assert_eq!(answer["effects"][0]["name"], "bushing_relaxation", "{answer}");
+    assert_eq!(answer["effects"][0]["at"], "top_mount", "{answer}");
+}
+
 /// Without the body's bending, a hydraulic mount explains more of the residuals than the compliant end of the damper.
 #[test]
 #[ignore = "a whole search; .ci/run runs it"]
@@ -855,6 +865,12 @@ fn a_law_of_a_spring_reaches_the_travel_of_kc_curves() {
         format!("{text}\n{judge}")
     });
     is_law_of_the_spring(&discover(&campaign, None));
+}
+
+#[test]
+#[ignore = "a whole search; .ci/run runs it"]
+fn a_law_of_a_spring_is_learned_from_a_whole_campaign() {
+    is_law_of_the_spring(&answer_to(hardening_spring()));
 }
 
 fn hardening_spring() -> Order {

@@ -105,7 +105,7 @@ proptest! {
     }
 }
 
-/// The tree of the expression, or the mistakes in its text.
+/// The tree of an expression without mistakes.
 fn read(text: &str) -> Expression {
     let parsed = parse_text(&source(format!("axle a {{ let x = {text}; }}")), 0);
     assert!(parsed.mistakes.is_empty(), "{text}: {:?}", parsed.mistakes);

@@ -113,6 +113,13 @@ pub enum NoError {
     NotConverged,
 }
 
+impl ParameterFit {
+    /// True if the channels determine the parameter only in combination with others.
+    pub fn is_only_in_combination(&self) -> bool {
+        matches!(self.why_no_stderr, Some(NoError::OnlyTogether { .. }))
+    }
+}
+
 impl NoError {
     /// The reason as a sentence.
     pub fn sentence(&self) -> String {

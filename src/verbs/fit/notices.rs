@@ -1,7 +1,7 @@
 //! Notices on a fit.
 
 use qcar_runtime::campaign::{Campaign, Role, Test};
-use qcar_runtime::fit::report::{NoError, ParameterFit};
+use qcar_runtime::fit::report::ParameterFit;
 use qcar_runtime::fit::{Fit, Level};
 
 /// A sentence if every fitted parameter is at a bound, so that the cost has no minimum within the ranges.
@@ -49,8 +49,7 @@ pub(super) fn unused_runs(campaign: &Campaign, levels: &[Level]) -> Vec<String> 
 
 /// A sentence if transmissibilities determine some parameters only in combination; further runs may determine them.
 pub(super) fn in_combination(fit: &Fit) -> Option<String> {
-    let is_one = |own: &ParameterFit| matches!(own.why_no_stderr, Some(NoError::OnlyTogether { .. }));
-    fit.parameters.iter().any(is_one).then(|| {
+    fit.parameters.iter().any(ParameterFit::is_only_in_combination).then(|| {
         "the transmissibilities determine some parameters only in combination; with --all-runs, the other runs of the \
          campaign are fitted too and may determine each of them"
             .into()

@@ -3,7 +3,7 @@
 use qcar_runtime::fit::Fit;
 use qcar_runtime::fit::bootstrap::Bootstrap;
 use qcar_runtime::fit::profile::ParameterProfile;
-use qcar_runtime::fit::report::{Bound, ChannelFit, Correlation, LocalMinimum, NoError, ParameterFit};
+use qcar_runtime::fit::report::{Bound, ChannelFit, Correlation, LocalMinimum, ParameterFit};
 use serde::Serialize;
 
 use super::{Fitted, minima};
@@ -114,8 +114,8 @@ pub(super) fn parameters(of: &[ParameterFit]) -> String {
 
 /// Refers to the verb that finds measurements to separate parameters which the runs determine only in combination.
 fn how_to_distinguish(of: &[ParameterFit]) -> String {
-    let is_one = |own: &&ParameterFit| matches!(own.why_no_stderr, Some(NoError::OnlyTogether { .. }));
-    let names: Vec<&str> = of.iter().filter(is_one).map(|own| &*own.name).collect();
+    let combined = of.iter().filter(|own| own.is_only_in_combination());
+    let names: Vec<&str> = combined.map(|own| &*own.name).collect();
     match names[..] {
         [] => String::new(),
         _ => format!(

@@ -80,11 +80,10 @@ fn binary(operator: Operator, left: &Expression, right: &Expression) -> String {
 /// brackets already and could be a unit nevertheless, so there they enclose the number: `(2 N)/(m*s)`.
 fn quotient(left: &Expression, right: &Expression) -> String {
     let (above, below) = (at_least(Rank::Product, left), at_least(Rank::Sign, right));
-    if !ends_in_unit(left) {
-        format!("{above}/{below}")
-    } else if begins_like_unit(right) {
+    let follows_unit = ends_in_unit(left);
+    if follows_unit && begins_like_unit(right) {
         format!("{above}/({below})")
-    } else if reads_as_unit(right) {
+    } else if follows_unit && reads_as_unit(right) {
         format!("({above})/{below}")
     } else {
         format!("{above}/{below}")
