@@ -3,7 +3,7 @@
 use qcar_runtime::campaign::Role;
 use qcar_runtime::discover::Evidence;
 use qcar_runtime::discover::observe::Kind;
-use qcar_runtime::discover::posterior::Explanation;
+use qcar_runtime::discover::posterior::{Explanation, SensorShare};
 use qcar_runtime::transmissibility::Point;
 use serde::Serialize;
 
@@ -44,40 +44,14 @@ pub(crate) fn left(evidence: &Evidence, [before, after]: [&Explanation; 2]) -> V
         Some(_) => Role::HeldOut,
         None => Role::Fit,
     };
-    let mut groups: Vec<(&Point, Kind)> = Vec::new();
-    for (_, series) in evidence.of_role(role) {
-        let group = (&series.sensor, series.kind);
-        if series.kind.order().is_none_or(|order| order == 1) && !groups.contains(&group) {
-            groups.push(group);
-        }
-    }
-    let percent = |(sensor, kind): (&Point, Kind), of: &Explanation| {
-        let (mut missed, mut measured) = (0.0, 0.0);
-        let own = evidence
-            .of_role(role)
-            .filter(|(_, series)| series.sensor == *sensor && series.kind == kind);
-        for (place, series) in own {
-            let parts = kind.parts();
-            let residuals = of.misfit.residuals[place].chunks(parts).zip(&series.sigma);
-            let scale = 1.0 / parts as f64;
-            missed += residuals
-                .map(|(own, sigma)| scale * own.iter().map(|r| (r * sigma).powi(2)).sum::<f64>())
-                .sum::<f64>();
-            let mean = match kind {
-                Kind::Time => series.value.iter().map(|value| value.re).sum::<f64>() / series.value.len() as f64,
-                _ => 0.0,
-            };
-            measured += series.value.iter().map(|value| (value - mean).norm_sqr()).sum::<f64>();
-        }
-        100.0 * (missed / measured).sqrt()
+    let [before, after] = [before, after].map(|of| of.misfit.sensor_shares(evidence, role));
+    let left = |(before, after): (SensorShare, SensorShare)| SensorResidual {
+        channel: channel(before.sensor),
+        kind: word(before.kind),
+        before_percent: 100.0 * before.missed(),
+        after_percent: 100.0 * after.missed(),
     };
-    let left = |group: (&Point, Kind)| SensorResidual {
-        channel: channel(group.0),
-        kind: word(group.1),
-        before_percent: percent(group, before),
-        after_percent: percent(group, after),
-    };
-    groups.into_iter().map(left).collect()
+    before.into_iter().zip(after).map(left).collect()
 }
 
 /// Name of the kind of run.

@@ -39,6 +39,8 @@ mod unsteady;
 mod initial_states;
 // Residuals over all runs, and where they are large.
 mod misfit;
+// The residual of each sensor as a share of its signal.
+mod sensor_share;
 // Explanation of the evidence by a model.
 mod explain;
 
@@ -49,4 +51,5 @@ pub use initial_states::estimate_initial_states;
 pub use misfit::{Misfit, Tile};
 pub use refit::Refit;
 pub use search::DECREMENT;
+pub use sensor_share::SensorShare;
 pub use unsteady::add_unsteady;

@@ -39,7 +39,8 @@ pub fn learn(base: &Set, first: Option<Set>, plain: &Set, evidence: &Evidence, p
     let best = best.map(|laws| without_needless_law(laws, base, plain, evidence));
     // The held-out score neglects the parameter uncertainty of the law, so it is too strict outside the range of the
     // fitted runs. If an effect is missing, a law that explains most of the excess residual is still useful.
-    let explains_most = |best: &Set| explained_share(base, best, evidence) >= evidence.numbers.explained();
+    let explains_most =
+        |best: &Set| stated_share(base, best, evidence).is_some_and(|share| share >= evidence.numbers.explained());
     best.filter(|best| is_supported(best, base, evidence) || is_missing(base, evidence) && explains_most(best))
 }
 
@@ -58,11 +59,15 @@ fn without_needless_law(laws: Set, base: &Set, plain: &Set, evidence: &Evidence)
     }
 }
 
-/// True if the evidence supports the learned laws and they predict the held-out runs better than `base`.
+/// True if the evidence supports the learned laws and they predict the held-out runs better than `base`. If `base` leaves
+/// no more than noise there, the laws must explain the fitted runs instead.
 pub fn is_supported(learned: &Set, base: &Set, evidence: &Evidence) -> bool {
     let is_more_probable = learned.log_posterior() > base.log_posterior();
-    let explained = explained_share(base, learned, evidence) > 0.0;
-    is_more_probable && explained && predicts_better(learned, base, evidence)
+    let explains = match stated_share(base, learned, evidence) {
+        Some(share) => share > 0.0,
+        None => explains_fitted(base, learned, evidence),
+    };
+    is_more_probable && explains && predicts_better(learned, base, evidence)
 }
 
 /// The set with the most probable law at its most probable place; `None` if no law can be fitted.

@@ -12,7 +12,7 @@ use crate::discover::answer::{Finding, Rival};
 use crate::discover::noise::AccuracyClass;
 use crate::discover::numbers::{Numbers, ONE_SIDED};
 use crate::discover::observe::Evidence;
-use crate::discover::posterior::{Explanation, Refit};
+use crate::discover::posterior::{Explanation, Refit, SensorShare};
 
 /// Rounds and evaluations of a fit to other evidence from a known optimum. A choice, ample so near an optimum.
 const AGAIN: (usize, usize) = (2, 20);
@@ -301,6 +301,14 @@ pub fn leaves_more_than_noise(set: &Set, evidence: &Evidence) -> bool {
 pub fn predicts_worse_than_noise(set: &Set, evidence: &Evidence) -> bool {
     let is_any = evidence.of_role(Role::HeldOut).next().is_some();
     is_any && is_more_than_noise(set.explanation.misfit.held_out, Role::HeldOut, evidence)
+}
+
+/// True if something is missing that only the held-out runs show: some sensor certainly misses more of its signal there
+/// than any model is expected to.
+pub fn misses_held_out(set: &Set, evidence: &Evidence) -> bool {
+    let shares = set.explanation.misfit.sensor_shares(evidence, Role::HeldOut);
+    let mut missed = shares.iter().map(SensorShare::certainly_missed);
+    missed.any(|share| share.is_nan() || share > evidence.numbers.expected_discrepancy)
 }
 
 /// True if the RMS of the normalised residuals of one role is significantly larger than 1. For a right model the mean
