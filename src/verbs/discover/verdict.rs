@@ -20,13 +20,26 @@ pub(crate) fn sentence(of: &Answer) -> String {
             listed(found),
             listed(class)
         ),
-        Verdict::Unknown => "something is missing that no effect of the catalogue explains".into(),
+        Verdict::Unknown => unexplained(of),
     }
 }
 
 /// RMS residual in standard deviations above which noise does not explain it. Sensors with errors beyond their data
 /// sheets leave less. `LARGE` in the report's `judgement.js` is the same limit.
 const LARGE: f64 = 2.0;
+
+/// The verdict `Unknown` as a sentence. If only the held-out runs show that something is missing, it says so: these runs
+/// may be of another state of the axle than the fitted ones.
+fn unexplained(of: &Answer) -> String {
+    let gap = &of.discovery.before.misfit;
+    let missing = "something is missing that no effect of the catalogue explains";
+    if gap.fit <= LARGE && gap.held_out > LARGE && of.discovery.learned.is_none() {
+        let left = number(gap.held_out, 3);
+        format!("{missing}: only the held-out runs show it, with residuals of {left} standard deviations")
+    } else {
+        missing.into()
+    }
+}
 
 /// The verdict `None` as a sentence. It depends on the held-out runs: if the fitted runs show no effect, the model may
 /// still predict others badly.
