@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use qcar_runtime::discover::answer::{Probable, Verdict};
 use qcar_runtime::discover::observe::Kind;
+use qcar_runtime::discover::posterior::Explanation;
 
 use super::Answer;
 use super::finding::described;
@@ -18,9 +19,10 @@ use crate::table::{Table, noted, number, or_dash};
 use crate::units;
 
 pub(super) fn text(of: &Answer) -> String {
-    let (before, after) = (&of.discovery.before.misfit, &of.discovery.after.misfit);
+    let (column, last) = last(of);
+    let (before, after) = (&of.discovery.before.misfit, &last.misfit);
     let mut out = format!("{}: {}\n{}\n", of.campaign, sentence(of), noted(&of.evidence.notices));
-    let mut residuals = Table::new(["residual_in_sd", "before", "after"]);
+    let mut residuals = Table::new(["residual_in_sd", "before", column]);
     for (name, before, after) in [
         ("fit", before.fit, after.fit),
         ("held_out", before.held_out, after.held_out),
@@ -65,6 +67,14 @@ pub(super) fn text(of: &Answer) -> String {
     out
 }
 
+/// What the base model is compared with, and the title of its column: the model with the learned law, or else the answer.
+fn last(of: &Answer) -> (&'static str, &Explanation) {
+    match &of.discovery.learned {
+        Some(law) => ("with_law", &law.explanation),
+        None => ("after", &of.discovery.after),
+    }
+}
+
 /// The most probable effects as a table; empty without any. An effect of an answer with several may explain little
 /// alone, so the columns say that they are of the effect alone.
 fn candidates(all: &[Probable]) -> String {
@@ -92,8 +102,9 @@ fn candidates(all: &[Probable]) -> String {
 
 /// Residual of each sensor.
 fn remaining(of: &Answer) -> String {
-    let mut table = Table::new(["residual_in_%_of_signal", "run", "before", "after"]);
-    for own in left(&of.evidence, [&of.discovery.before, &of.discovery.after]) {
+    let (column, last) = last(of);
+    let mut table = Table::new(["residual_in_%_of_signal", "run", "before", column]);
+    for own in left(&of.evidence, [&of.discovery.before, last]) {
         let (before, after) = (number(own.before_percent, 3), number(own.after_percent, 3));
         table.row(vec![own.channel, own.kind.into(), before, after]);
     }

@@ -135,7 +135,7 @@ impl Set {
         self.has_inaccurate_sensors().then(|| {
             format!(
                 "the gains of the sensors seem to change by {} over the band, where {} is usual; the answer allows for \
-                 that",
+                 that; a model that is still wrong can cause this too",
                 percent(class),
                 percent(AccuracyClass::default())
             )

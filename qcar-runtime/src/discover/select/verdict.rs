@@ -2,8 +2,10 @@
 
 use super::answers::{Answer, answers, credible};
 use super::assembly::Placed;
-use super::set::{Set, best_base, by_log_posterior, explained_share, is_missing, is_part, misses_held_out, stated_share};
-use crate::discover::answer::{Discovery, Finding, Probable, Verdict};
+use super::set::{
+    Set, best_base, by_log_posterior, explained_share, is_missing, is_part, misses_held_out, stated_share,
+};
+use crate::discover::answer::{Discovery, Finding, Probable, Rival, Verdict};
 use crate::discover::numbers::GREATER_PART;
 use crate::discover::observe::Evidence;
 
@@ -64,8 +66,15 @@ fn finding(set: &Set, own: &Placed, base: &Set, evidence: &Evidence) -> Finding 
         parameters: own.unknowns.parameters(&set.explanation),
         evidence: set.explanation.refit.log_evidence - base.explanation.refit.log_evidence,
         explained: stated_share(base, set, evidence),
-        rivals: set.rivals.clone(),
+        rivals: rivals(set),
     }
+}
+
+/// The rivals of a set without other forms of its own effects.
+fn rivals(set: &Set) -> Vec<Rival> {
+    let names = set.names();
+    let is_other = |own: &&Rival| !names.contains(&(own.effect.as_str(), own.at.as_str()));
+    set.rivals.iter().filter(is_other).cloned().collect()
 }
 
 /// Sum of the probabilities of the wanted answers.
