@@ -255,12 +255,13 @@ pub(crate) fn answer(
         Update::Step(what) => showing.step(format!("{}: {what}", campaign.name)),
         Update::Done(done, of) => showing.count(done, of),
         Update::Interim(what, findings, explanation) => {
-            note(what);
             let before = base_explanation.get_or_init(|| explanation.clone());
             if let Some(folder) = out {
                 let files = unfinished::files(&campaign.name, &bench, findings, [before, explanation]);
                 leave(&unfinished::folder(folder), files);
             }
+            // Last, so that a search which is stopped after this line has left its files.
+            note(what);
         }
     };
     let discovery = select::discover(Box::new(bench.clone()), &setting, &mut evidence, &on_update);
