@@ -1,13 +1,12 @@
 //! The residual of each sensor, in percent of its signal.
 
-use qcar_runtime::campaign::Role;
 use qcar_runtime::discover::Evidence;
 use qcar_runtime::discover::observe::Kind;
 use qcar_runtime::discover::posterior::{Explanation, SensorShare};
 use qcar_runtime::transmissibility::Point;
 use serde::Serialize;
 
-/// Residual of one sensor in one kind of run, on the held-out runs, or on the fitted runs if none is held out.
+/// Residual of one sensor in one kind of run, on the runs that judge a model.
 #[derive(Serialize)]
 pub(crate) struct SensorResidual {
     /// The sensor.
@@ -37,14 +36,10 @@ impl BeforeAfter {
     }
 }
 
-/// Residuals of every sensor in every kind of run: on the held-out runs, or on the fitted runs if none is held out.
+/// Residuals of every sensor in every kind of run, on the runs that judge a model.
 /// Higher harmonics are left out, because they are small.
 pub(crate) fn left(evidence: &Evidence, [before, after]: [&Explanation; 2]) -> Vec<SensorResidual> {
-    let role = match evidence.of_role(Role::HeldOut).next() {
-        Some(_) => Role::HeldOut,
-        None => Role::Fit,
-    };
-    let [before, after] = [before, after].map(|of| of.misfit.sensor_shares(evidence, role));
+    let [before, after] = [before, after].map(|of| of.misfit.sensor_shares(evidence, evidence.judging()));
     let left = |(before, after): (SensorShare, SensorShare)| SensorResidual {
         channel: channel(before.sensor),
         kind: word(before.kind),

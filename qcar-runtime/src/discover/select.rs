@@ -57,7 +57,7 @@ use integration::AccuracyCheck;
 use probability::probabilities;
 use reduce::reductions;
 use set::{
-    Set, best_base, excess, explained_share, is_missing, keep_best, leaves_more_than_noise, most_probable,
+    Set, best_base, excess, explained_share, held_out_judge, is_missing, keep_best, leaves_more_than_noise, most_probable,
     predicts_worse_than_noise,
 };
 use verdict::conclude;
@@ -103,6 +103,7 @@ pub fn discover(
     }
     let search = |sets: Vec<Set>, evidence: &mut Evidence| {
         let mut sets = sets;
+        evidence.held_out_judge = held_out_judge(&sets[0], evidence);
         loop {
             if let Some(searched) = attempt(sets, evidence, progress) {
                 return Ok::<_, PredictError>(searched);

@@ -1,8 +1,7 @@
 // The answer in sentences.
 
-// If the residual of a sensor is above both, noise and calibration do not explain it: percent of its signal, as in discovery's own
-// verdict, and standard deviations.
-const LARGE = { percent: 5, deviations: 2 };
+// RMS residual in standard deviations above which noise does not explain it, as in the verdict of the command line.
+const LARGE = 2;
 
 // A rival whose log evidence is lower by less than this has at least a twentieth of the probability of the answer.
 const APART = Math.log(20);
@@ -27,10 +26,6 @@ function leftOver({ left, by_channel: deviations, effects }) {
   return parts.sort((a, b) => b.percent - a.percent);
 }
 
-function muchLeft(discover) {
-  return leftOver(discover).filter((own) => own.percent > LARGE.percent && own.deviations > LARGE.deviations);
-}
-
 function lead({ summary, discover }) {
   if (summary.verdict !== 'found') {
     return `${words(summary.missing.charAt(0).toUpperCase() + summary.missing.slice(1))}.`;
@@ -38,7 +33,7 @@ function lead({ summary, discover }) {
   const names = together(discover.effects.map(placed));
   const alike = rivalsAlike(discover).map((rival) => `${words(rival.effect)} at ${words(rival.at)}`);
   const rivals = alike.length ? `, not distinguishable from ${alike.join(' or ')}` : '';
-  return muchLeft(discover).length
+  return discover.partly_explained
     ? `Partly explained by ${names}${rivals}. Large residuals remain.`
     : `Missing: ${names}${rivals}.`;
 }
@@ -73,7 +68,7 @@ function consequence(discover, { verdict: kind }, likely) {
 
 // The fitted runs may show no effect although other runs are predicted badly.
 function unneeded(gap) {
-  return gap.before > LARGE.deviations
+  return gap.before > LARGE
     ? 'The fitted runs show no effect of the catalogue, but the model does not predict these runs.'
     : 'No effect of the catalogue is needed.';
 }

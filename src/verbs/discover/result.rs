@@ -14,6 +14,7 @@ use super::fitted::{Offset, at_bound, offsets};
 use super::learned;
 use super::nuisances::{self, Nuisance};
 use super::places::{self, PlaceStiffness, missing};
+use super::verdict::is_partly_explained;
 use crate::json::{self, Ordered};
 use crate::sensor_residuals::{BeforeAfter, SensorResidual, channel, left};
 
@@ -23,11 +24,13 @@ pub(crate) struct Result<'a> {
     campaign: &'a str,
     model: &'a str,
     verdict: Verdict,
+    /// True if the findings leave large residuals.
+    partly_explained: bool,
     /// Probability of the answer.
     probability: Option<f64>,
     /// The most probable effects.
     candidates: &'a [Probable],
-    /// Residual of each sensor on the held-out runs, or on the fitted runs if none is held out.
+    /// Residual of each sensor on the runs that judge a model.
     left: Vec<SensorResidual>,
     effects: Vec<Effect<'a>>,
     /// Nuisance effects that were fitted with the findings.
@@ -112,6 +115,7 @@ pub(crate) fn result(of: &Answer) -> Result<'_> {
         campaign: &of.campaign,
         model: &of.base_model,
         verdict: of.discovery.verdict,
+        partly_explained: is_partly_explained(of),
         probability: of.discovery.probability,
         candidates: &of.discovery.candidates,
         left: left(&of.evidence, [&of.discovery.before, &of.discovery.after]),

@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 
 use qcar_runtime::discover::answer::{Finding, Verdict};
 use qcar_runtime::discover::numbers::DOUBTFUL_BELOW;
+use qcar_runtime::discover::posterior::SensorShare;
 
 use super::Answer;
 use crate::table::number;
@@ -11,17 +12,25 @@ use crate::table::number;
 /// The verdict as a sentence.
 pub(crate) fn sentence(of: &Answer) -> String {
     let (found, class) = of.discovery.certain_and_alternatives();
+    let remains = if is_partly_explained(of) { "; large residuals remain" } else { "" };
     match of.discovery.verdict {
         Verdict::None => nothing_found(of),
-        Verdict::Found => format!("found {}", listed(found)),
-        Verdict::Class if found.is_empty() => format!("these data cannot distinguish {}", listed(class)),
+        Verdict::Found => format!("found {}{remains}", listed(found)),
+        Verdict::Class if found.is_empty() => format!("these data cannot distinguish {}{remains}", listed(class)),
         Verdict::Class => format!(
-            "found {}, and in addition these data cannot distinguish {}",
+            "found {}, and in addition these data cannot distinguish {}{remains}",
             listed(found),
             listed(class)
         ),
         Verdict::Unknown => unexplained(of),
     }
+}
+
+/// True if there are findings and they leave more of the signal of some sensor than noise and a usual model error do.
+pub(super) fn is_partly_explained(of: &Answer) -> bool {
+    let shares = (of.discovery.after.misfit).sensor_shares(&of.evidence, of.evidence.judging());
+    let is_large = |share: &SensorShare| share.certainly_missed() > of.evidence.numbers.expected_discrepancy;
+    !of.discovery.findings.is_empty() && shares.iter().any(is_large)
 }
 
 /// RMS residual in standard deviations above which noise does not explain it. Sensors with errors beyond their data

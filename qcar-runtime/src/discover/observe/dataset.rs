@@ -21,6 +21,8 @@ pub struct Evidence {
     pub notices: Vec<String>,
     /// Assumptions of a search on this data set.
     pub numbers: Numbers,
+    /// False if the held-out runs do not show what the model misses in the fitted ones.
+    pub held_out_judge: bool,
 }
 
 impl Evidence {
@@ -28,6 +30,15 @@ impl Evidence {
     pub fn of_role(&self, role: Role) -> impl Iterator<Item = (usize, &Series)> {
         let series = self.series.iter().enumerate();
         series.filter(move |(_, series)| self.runs[series.run].role == role)
+    }
+
+    /// Role of the runs that judge a model: held out, or fitted if none is held out or if those do not show what is
+    /// missing.
+    pub fn judging(&self) -> Role {
+        match self.of_role(Role::HeldOut).next() {
+            Some(_) if self.held_out_judge => Role::HeldOut,
+            _ => Role::Fit,
+        }
     }
 
     /// Sensors of a run, without duplicates.

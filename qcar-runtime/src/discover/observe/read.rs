@@ -21,6 +21,7 @@ impl Evidence {
             two_sided: campaign.channels.iter().any(|channel| channel.side == Side::Right),
             notices: Vec::new(),
             numbers: Numbers::default(),
+            held_out_judge: true,
         };
         for run in &campaign.runs {
             evidence.add(campaign, about, run)?;

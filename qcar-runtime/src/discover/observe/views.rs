@@ -96,6 +96,7 @@ impl Evidence {
             two_sided: self.two_sided,
             notices: self.notices.clone(),
             numbers: self.numbers.clone(),
+            held_out_judge: self.held_out_judge,
         }
     }
 }

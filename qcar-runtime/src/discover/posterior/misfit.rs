@@ -93,11 +93,11 @@ impl Misfit {
         })
     }
 
-    /// RMS on the runs that judge the model: the held-out runs, or the fitted runs if none is held out.
+    /// RMS on the runs that judge the model.
     pub fn judged(&self, evidence: &Evidence) -> f64 {
-        match evidence.of_role(Role::HeldOut).next() {
-            Some(_) => self.held_out,
-            None => self.fit,
+        match evidence.judging() {
+            Role::HeldOut => self.held_out,
+            Role::Fit => self.fit,
         }
     }
 }

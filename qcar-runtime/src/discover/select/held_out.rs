@@ -15,7 +15,7 @@ use crate::discover::posterior::Explanation;
 /// Fewer effects that are no part of the set replace it if they explain nearly all of the residual and predict the
 /// held-out runs at least as well: several effects can imitate a law whose form is a little different.
 pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
-    let has_held_out = evidence.of_role(Role::HeldOut).next().is_some();
+    let is_judged = evidence.judging() == Role::HeldOut;
     let unexplained = evidence.numbers.error_probability * excess(&sets[best_base(sets)].explanation, evidence);
     loop {
         let set = &sets[best];
@@ -25,11 +25,11 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
             let is_enough = || excess(&part.with_sensors_of(set, evidence), evidence) <= 0.0;
             let explains_little = || is_enough() || explained_share(part, set, evidence) < evidence.numbers.explained();
             let changes_little = !part.names().is_empty() && explains_little();
-            let fails = has_held_out && (changes_little || !predicts_better(part));
+            let fails = is_judged && (changes_little || !predicts_better(part));
             fails || set.adds_effect_at_bound(part, evidence) || rests_on_passages(set, part, evidence)
         };
         let is_simpler = |other: &Set| {
-            let explains = has_held_out && excess(&other.explanation, evidence) <= unexplained;
+            let explains = is_judged && excess(&other.explanation, evidence) <= unexplained;
             explains && !other.names().is_empty() && !predicts_better(other)
         };
         let replaces = |&other: &usize| match is_part(&sets[other], set) {
@@ -46,8 +46,8 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
     }
 }
 
-/// True if a set predicts the held-out runs better than another set with the same sensor errors, or if no run is held
-/// out. With sensor errors of its own, a set that lacks an effect could attribute its residual to inaccurate sensors,
+/// True if a set predicts the held-out runs better than another set with the same sensor errors. If these runs do not
+/// judge, it is true unless the prediction is certainly worse, or if no run is held out. With sensor errors of its own, a set that lacks an effect could attribute its residual to inaccurate sensors,
 /// and its prediction would then seem as good.
 ///
 /// A set that explains nearly all of the residual counts as better whatever its score. The score assumes that the
@@ -57,8 +57,12 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
 pub fn predicts_better(set: &Set, other: &Set, evidence: &Evidence) -> bool {
     let none_held_out = evidence.of_role(Role::HeldOut).next().is_none();
     let score = |own: &Explanation| log_score(own, evidence);
+    let least = match evidence.judging() {
+        Role::HeldOut => 0.0,
+        Role::Fit => -evidence.numbers.odds_of_certain().ln(),
+    };
     none_held_out
-        || score(&set.explanation) > score(&other.with_sensors_of(set, evidence))
+        || score(&set.explanation) - score(&other.with_sensors_of(set, evidence)) > least
         || explained_share(other, set, evidence) >= evidence.numbers.certain()
 }
 

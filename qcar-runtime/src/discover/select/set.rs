@@ -285,11 +285,14 @@ pub fn is_part(part: &Set, whole: &Set) -> bool {
 /// True if an effect is missing: the discrepancy of some sensor exceeds the expected one, and the excess residual is
 /// positive. A noisy sensor alone is no sign of an effect.
 pub fn is_missing(set: &Set, evidence: &Evidence) -> bool {
+    has_large_discrepancy(set, evidence) && excess(&set.explanation, evidence) > 0.0
+}
+
+/// True if the model misses more of the signal of some fitted sensor than any model is expected to.
+fn has_large_discrepancy(set: &Set, evidence: &Evidence) -> bool {
     let discrepancy = set.explanation.refit.discrepancy.iter();
-    let is_large = discrepancy
-        .flat_map(|own| own.by_group())
-        .any(|missed| missed.tau > evidence.numbers.expected_discrepancy);
-    is_large && excess(&set.explanation, evidence) > 0.0
+    let mut missed = discrepancy.flat_map(|own| own.by_group());
+    missed.any(|missed| missed.tau > evidence.numbers.expected_discrepancy)
 }
 
 /// True if the fitted residuals are significantly larger than noise.
@@ -334,7 +337,16 @@ pub fn stated_share(before: &Set, after: &Set, evidence: &Evidence) -> Option<f6
     is_something.then(|| explained_share(before, after, evidence))
 }
 
-/// Excess residual of the held-out runs, or of the fitted runs if none is held out: see [`above_noise`].
+/// True if the held-out runs show what the model misses. They do not if only the discrepancy of fitted sensors is large
+/// and their excess residual is a negligible part of that of the fitted runs: a stop that K&C curves reach and held-out
+/// cleat runs do not.
+pub fn held_out_judge(set: &Set, evidence: &Evidence) -> bool {
+    let misfit = &set.explanation.misfit;
+    let is_negligible = above_noise(misfit.held_out) < evidence.numbers.error_probability * above_noise(misfit.fit);
+    !is_negligible || !has_large_discrepancy(set, evidence) || misses_held_out(set, evidence)
+}
+
+/// Excess residual of the runs that judge a model: see [`above_noise`].
 pub fn excess(own: &Explanation, evidence: &Evidence) -> f64 {
     above_noise(own.misfit.judged(evidence))
 }
