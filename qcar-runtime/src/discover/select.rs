@@ -190,6 +190,7 @@ fn attempt(mut sets: Vec<Set>, evidence: &Evidence, progress: Progress<'_>) -> O
             let others = other_forms(&sets[place], &sets, evidence);
             sets.extend(others);
         }
+        refit_best(&mut sets, evidence);
         accuracy.suffices(&sets)?;
         report(&sets[best(&sets)], evidence, progress);
     }
@@ -205,6 +206,7 @@ fn attempt(mut sets: Vec<Set>, evidence: &Evidence, progress: Progress<'_>) -> O
         let others = exchanges(&sets[place], &sets, evidence);
         sets.extend(others);
     }
+    refit_best(&mut sets, evidence);
     accuracy.suffices(&sets)?;
     let (mut discovery, mut found) = conclude(&sets, evidence);
     if let Some(mended) = accuracy.mended(&sets[found]) {
@@ -358,6 +360,21 @@ fn with_untried_forms(sets: &[Set], evidence: &Evidence) -> Option<usize> {
     let set = &sets[best];
     let is_open = !set.forms_tried && set.assembly.effects().len() > 1 && leaves_more_than_noise(set, evidence);
     is_open.then_some(best)
+}
+
+/// Fits the most probable set again from the smallest discrepancy, with those of the same effects in other forms, if
+/// it has effects and leaves more than noise. Keeps the better fits.
+fn refit_best(sets: &mut Vec<Set>, evidence: &Evidence) {
+    let best = &sets[best(sets)];
+    if best.names().is_empty() || !leaves_more_than_noise(best, evidence) {
+        return;
+    }
+    let is_open = |place: &usize| !sets[*place].refitted && sets[*place].names() == best.names();
+    let open: Vec<usize> = (0..sets.len()).filter(is_open).collect();
+    let again = open.par_iter().filter_map(|&place| sets[place].from_small_discrepancy(evidence));
+    let again: Vec<Set> = again.collect();
+    open.iter().for_each(|&place| sets[place].refitted = true);
+    again.into_iter().for_each(|own| keep_best(own, sets));
 }
 
 /// The most probable set, or the part of it that the held-out runs support, if it has several effects and its rivals

@@ -213,7 +213,7 @@ impl<'a> Replay<'a> {
         let steps = steps(self.how.rate);
         let length = 1.0 / (self.how.rate * steps as f64);
         let inputs = self.nodes.get_or_init(|| self.inputs(steps));
-        let count = inputs.count();
+        let count = self.nodes_of_record(steps);
         let mut restarts = self.restarts.iter().peekable();
         let mut signals = vec![Vec::with_capacity(self.how.samples); self.readings.len() * tangent.directions()];
         let mut taken = Vec::new();
@@ -275,11 +275,16 @@ impl<'a> Replay<'a> {
     /// The inputs of the model at each node.
     fn inputs(&self, steps: usize) -> Instants {
         let rows = rows(self.model.about(), &self.recorded, &self.how, 2 * steps);
-        let nodes = rows.first().map_or(0, Vec::len);
+        let nodes = 0..self.nodes_of_record(steps);
         Instants {
             width: rows.len(),
-            values: (0..nodes).flat_map(|k| rows.iter().map(move |row| row[k])).collect(),
+            values: nodes.flat_map(|k| rows.iter().map(move |row| row[k])).collect(),
         }
+    }
+
+    /// Number of integration nodes. A model without inputs has them too: it decays freely.
+    fn nodes_of_record(&self, steps: usize) -> usize {
+        2 * steps * self.how.samples
     }
 
     /// Integrates from a state with some changed values.
@@ -290,7 +295,7 @@ impl<'a> Replay<'a> {
         let mut y = vec![0.0; self.model.about().outputs.len()];
         let carried = self.carried(p);
         let mut stepper = Stepper::new(self.model, p, 1.0 / (self.how.rate * steps as f64), self.how.accuracy);
-        let count = inputs.count();
+        let count = self.nodes_of_record(steps);
         let mut taken = Vec::with_capacity(count / 2);
         let mut signals = vec![Vec::new(); self.readings.len()];
         let mut states = Vec::with_capacity(x.len() * self.how.samples);

@@ -4,9 +4,10 @@ use std::borrow::Cow;
 use std::cmp::Ordering;
 use std::sync::{Arc, Mutex};
 
-use super::assembly::{Assembly, Placed};
+use super::assembly::{Assembly, Place, Placed};
 use super::fidelity::Fidelity;
 use super::finite_explanation;
+use super::race::{FINE_BUDGET, continued};
 use crate::campaign::Role;
 use crate::discover::answer::{Finding, Rival};
 use crate::discover::noise::AccuracyClass;
@@ -32,6 +33,8 @@ pub struct Set {
     pub exchanged: bool,
     /// True once it has been fitted without each of its effects.
     pub reduced: bool,
+    /// True once it has been fitted again from the smallest discrepancy.
+    pub refitted: bool,
     /// Candidates that were dropped in the race that led to it.
     pub rivals: Vec<Rival>,
     /// Its explanations with the sensors of other sets: see [`Self::with_sensors_of`].
@@ -65,6 +68,7 @@ impl Set {
             forms_tried: false,
             exchanged: false,
             reduced: false,
+            refitted: false,
             rivals: Vec::new(),
             with_sensors: Arc::default(),
         }
@@ -85,7 +89,30 @@ impl Set {
         let hypothesis = self.assembly.hypothesis();
         let from = hypothesis.place(&self.explanation.refit);
         let refit = hypothesis.fit(&from, &self.steady(evidence), AGAIN).ok()?;
-        let explanation = finite_explanation(&hypothesis, refit, evidence)?;
+        self.with_fit(refit, evidence)
+    }
+
+    /// The set fitted again from its optimum with the smallest discrepancy; `None` if the fit fails. A fit alternates
+    /// between the parameters and the discrepancy. Where the parameters are wrong, the discrepancy is large, and then
+    /// hardly anything is gained by better ones: a local minimum, which this fit leaves.
+    pub fn from_small_discrepancy(&self, evidence: &Evidence) -> Option<Self> {
+        let hypothesis = self.assembly.hypothesis();
+        let steady = self.steady(evidence);
+        let from = Place {
+            discrepancy: Place::given(&steady).discrepancy,
+            ..hypothesis.place(&self.explanation.refit)
+        };
+        let refit = hypothesis.fit(&from, &steady, FINE_BUDGET).ok()?;
+        let refit = continued(&hypothesis, refit, &steady, |_| true)?;
+        let refitted = true;
+        Some(Self {
+            refitted,
+            ..self.with_fit(refit, evidence)?
+        })
+    }
+
+    fn with_fit(&self, refit: Refit, evidence: &Evidence) -> Option<Self> {
+        let explanation = finite_explanation(&self.assembly.hypothesis(), refit, evidence)?;
         Some(Self {
             explanation,
             with_sensors: Arc::default(),
