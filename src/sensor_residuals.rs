@@ -62,6 +62,19 @@ fn word(kind: Kind) -> &'static str {
     }
 }
 
+/// Runs of a kind in a sentence.
+pub(crate) fn runs(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Harmonic(_) => "sweeps",
+        Kind::Time => "records",
+        Kind::Passage => "cleat runs",
+        Kind::Travel => "K&C curves",
+        Kind::Width => "the hysteresis of K&C curves",
+        Kind::Speed => "dynamometer runs",
+        Kind::Cycle(_) => "K&C sines",
+    }
+}
+
 /// Name of a sensor in tables and JSON.
 pub(crate) fn channel(sensor: &Point) -> String {
     format!("{}_{}", sensor.place().replace(' ', "_"), sensor.axis.name())

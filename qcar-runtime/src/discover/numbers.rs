@@ -45,6 +45,10 @@ pub const GREATER_PART: f64 = 0.5;
 /// the normal distribution.
 pub const ONE_SIDED: f64 = 1.645;
 
+/// RMS residual in standard deviations above which noise does not explain it. Sensors with errors beyond their data
+/// sheets leave less. A choice. `LARGE` in the report's `judgement.js` is the same limit.
+pub const LARGE: f64 = 2.0;
+
 /// Probability of the base model below which it is doubtful: something is then probably missing, and a law is learned
 /// even if no effect is certain.
 pub const DOUBTFUL_BELOW: f64 = 0.5;

@@ -3,16 +3,17 @@
 use std::cmp::Ordering;
 
 use qcar_runtime::discover::answer::{Finding, Verdict};
-use qcar_runtime::discover::numbers::DOUBTFUL_BELOW;
+use qcar_runtime::discover::numbers::{DOUBTFUL_BELOW, LARGE};
 use qcar_runtime::discover::posterior::SensorShare;
 
 use super::Answer;
+use crate::sensor_residuals::{channel, runs};
 use crate::table::number;
 
 /// The verdict as a sentence.
 pub(crate) fn sentence(of: &Answer) -> String {
     let (found, class) = of.discovery.certain_and_alternatives();
-    let remains = if is_partly_explained(of) { "; large residuals remain" } else { "" };
+    let remains = largest_residual(of).map_or_else(String::new, |share| remaining(&share));
     match of.discovery.verdict {
         Verdict::None => nothing_found(of),
         Verdict::Found => format!("found {}{remains}", listed(found)),
@@ -26,16 +27,25 @@ pub(crate) fn sentence(of: &Answer) -> String {
     }
 }
 
-/// True if there are findings and they leave more of the signal of some sensor than noise and a usual model error do.
-pub(super) fn is_partly_explained(of: &Answer) -> bool {
-    let shares = (of.discovery.after.misfit).sensor_shares(&of.evidence, of.evidence.judging());
-    let is_large = |share: &SensorShare| share.certainly_missed() > of.evidence.numbers.expected_discrepancy;
-    !of.discovery.findings.is_empty() && shares.iter().any(is_large)
+/// What is left of a sensor, as the end of a sentence.
+fn remaining(share: &SensorShare<'_>) -> String {
+    let percent = number(100.0 * share.missed(), 2);
+    format!("; {percent} % of {} in {} remains", channel(share.sensor), runs(share.kind))
 }
 
-/// RMS residual in standard deviations above which noise does not explain it. Sensors with errors beyond their data
-/// sheets leave less. `LARGE` in the report's `judgement.js` is the same limit.
-const LARGE: f64 = 2.0;
+/// True if there are findings and they leave large residuals.
+pub(super) fn is_partly_explained(of: &Answer) -> bool {
+    !of.discovery.findings.is_empty() && largest_residual(of).is_some()
+}
+
+/// The sensor with the largest share of its signal that the findings miss, of those that they miss more of than noise and
+/// a usual model error; `None` without such a sensor.
+fn largest_residual(of: &Answer) -> Option<SensorShare<'_>> {
+    let misfit = &of.discovery.after.misfit;
+    let shares = misfit.sensor_shares(&of.evidence, of.evidence.judging());
+    let large = shares.into_iter().filter(|share| share.is_large(&of.evidence.numbers));
+    large.max_by(|a, b| a.missed().total_cmp(&b.missed()))
+}
 
 /// The verdict `Unknown` as a sentence. If only the held-out runs show that something is missing, it says so: these runs
 /// may be of another state of the axle than the fitted ones.

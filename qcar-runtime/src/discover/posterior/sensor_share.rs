@@ -2,7 +2,7 @@
 
 use super::misfit::Misfit;
 use crate::campaign::Role;
-use crate::discover::numbers::ONE_SIDED;
+use crate::discover::numbers::{LARGE, Numbers};
 use crate::discover::observe::{Evidence, Kind, Series};
 use crate::transmissibility::Point;
 
@@ -15,8 +15,6 @@ pub struct SensorShare<'a> {
     pub kind: Kind,
     /// Sums of squares, in the unit of the sensor: of the residuals, of what noise alone leaves of them, and of the signal.
     squares: [f64; 3],
-    /// Number of residuals.
-    count: usize,
 }
 
 impl SensorShare<'_> {
@@ -26,17 +24,17 @@ impl SensorShare<'_> {
         (residual / signal).sqrt()
     }
 
-    /// The part of [`missed`](Self::missed) that is certainly not noise; 0 if noise could be all of it, and NaN if the
-    /// model cannot predict the runs. The mean square of `n` normal values has a relative standard deviation of
-    /// `sqrt(2/n)`.
-    pub fn certainly_missed(&self) -> f64 {
-        let [residual, noise, signal] = self.squares;
-        let above_noise = residual - noise * (1.0 + ONE_SIDED * (2.0 / self.count as f64).sqrt());
-        if above_noise <= 0.0 {
-            0.0
-        } else {
-            (above_noise / signal).sqrt()
-        }
+    /// RMS of the residual over that of noise alone, 1.
+    pub fn deviations(&self) -> f64 {
+        let [residual, noise, _] = self.squares;
+        (residual / noise).sqrt()
+    }
+
+    /// True if the model misses more of the signal than any model is expected to, and noise does not explain it, or if
+    /// it cannot predict the runs.
+    pub fn is_large(&self, numbers: &Numbers) -> bool {
+        let is_small = self.missed() <= numbers.expected_discrepancy || self.deviations() <= LARGE;
+        !is_small
     }
 }
 
@@ -51,18 +49,9 @@ impl Misfit {
         for (place, series) in compared {
             let (sensor, kind) = (&series.sensor, series.kind);
             let squares = squares(series, &self.residuals[place]);
-            let count = series.residuals();
             match shares.iter_mut().find(|own| (own.sensor, own.kind) == (sensor, kind)) {
-                Some(own) => {
-                    own.count += count;
-                    own.squares.iter_mut().zip(squares).for_each(|(sum, more)| *sum += more);
-                }
-                None => shares.push(SensorShare {
-                    sensor,
-                    kind,
-                    squares,
-                    count,
-                }),
+                Some(own) => own.squares.iter_mut().zip(squares).for_each(|(sum, more)| *sum += more),
+                None => shares.push(SensorShare { sensor, kind, squares }),
             }
         }
         shares

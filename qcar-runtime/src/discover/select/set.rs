@@ -13,7 +13,7 @@ use crate::discover::answer::{Finding, Rival};
 use crate::discover::noise::AccuracyClass;
 use crate::discover::numbers::{Numbers, ONE_SIDED};
 use crate::discover::observe::Evidence;
-use crate::discover::posterior::{Explanation, Refit, SensorShare};
+use crate::discover::posterior::{Explanation, Refit};
 
 /// Rounds and evaluations of a fit to other evidence from a known optimum. A choice, ample so near an optimum.
 const AGAIN: (usize, usize) = (2, 20);
@@ -333,12 +333,10 @@ pub fn predicts_worse_than_noise(set: &Set, evidence: &Evidence) -> bool {
     is_any && is_more_than_noise(set.explanation.misfit.held_out, Role::HeldOut, evidence)
 }
 
-/// True if something is missing that only the held-out runs show: some sensor certainly misses more of its signal there
-/// than any model is expected to.
+/// True if something is missing that only the held-out runs show: the residual of some sensor is large there.
 pub fn misses_held_out(set: &Set, evidence: &Evidence) -> bool {
     let shares = set.explanation.misfit.sensor_shares(evidence, Role::HeldOut);
-    let mut missed = shares.iter().map(SensorShare::certainly_missed);
-    missed.any(|share| share.is_nan() || share > evidence.numbers.expected_discrepancy)
+    shares.iter().any(|share| share.is_large(&evidence.numbers))
 }
 
 /// True if the RMS of the normalised residuals of one role is significantly larger than 1. For a right model the mean
