@@ -846,6 +846,30 @@ fn a_stop_at_the_end_of_a_kc_curve_is_found() {
     assert_near(&answer, &stop);
 }
 
+/// The held-out sweep and cleat run do not reach the stop either, so they do not judge it. The search first ends where a
+/// large discrepancy hides that the gap is 3 mm too large, five standard errors.
+#[test]
+#[ignore = "a whole search; .ci/run runs it"]
+fn a_stop_that_only_the_kc_curve_reaches_is_estimated_well() {
+    let stop = [("gap", 0.045), ("k_stop", 120e3)];
+    let answer = answer_to(Order {
+        programme: Programme::fast(),
+        effects: vec![Hidden::new("bump_stop", "spring", &stop)],
+        ..Order::clean("c", 5)
+    });
+    assert_eq!(answer["verdict"], "found", "{answer}");
+    assert_eq!(answer["partly_explained"], false, "{answer}");
+    let effect = &answer["effects"][0];
+    assert_eq!([&effect["name"], &effect["at"]], ["bump_stop", "spring"], "{answer}");
+    for (name, truth) in stop {
+        let [value, error] = ["parameters", "stderr"].map(|key| effect[key][name].as_f64().unwrap());
+        assert!(
+            (value - truth).abs() < 3.0 * error,
+            "{name}: {value} ± {error}, not {truth}"
+        );
+    }
+}
+
 /// K&C curves reach three times the travel of the sweeps. The rate of this spring is 1.7 times that at rest at the end
 /// of the sweeps, and 19 times at the end of the K&C curves. A second bounce curve judges, which no named effect follows.
 #[test]

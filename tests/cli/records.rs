@@ -330,6 +330,39 @@ fn a_plan_proposes_to_repeat_free_decays() {
     assert!(further.iter().all(|own| own["kind"] != "sensor"), "{plan}");
 }
 
+/// Nothing can drive this model, and every verb replays its decays.
+#[test]
+fn a_model_without_inputs_decays_freely() {
+    let folder = tempfile::tempdir().unwrap();
+    decaying_campaign(folder.path());
+    let manifest = folder.path().join("campaign.toml");
+    let text = fs::read_to_string(&manifest).unwrap();
+    fs::write(&manifest, text.replace("model = \"one_mass\"", "model = \"free.axle\"")).unwrap();
+    fs::write(folder.path().join("free.axle"), FREE).unwrap();
+    let path = folder.path().to_str().unwrap();
+    let fit: Value = serde_json::from_str(&succeeds(&["fit", path, "--format", "json"])).unwrap();
+    for (name, truth) in [("c_body", 3.0), ("k_body", 800.0)] {
+        let value = fit["parameters"][name]["value"].as_f64().unwrap();
+        assert!((value / truth - 1.0).abs() < 2e-3, "{name}: {fit}");
+    }
+    succeeds(&["simulate", path]);
+    let (found, answer) = discovered_into(&folder.path().join("out"), path);
+    assert_eq!(answer["verdict"], "none", "{found}");
+}
+
+const FREE: &str = "axle free {
+    \"A mass on a spring and a damper\"
+    known param m_body: kg = 2 in 0.1..10 \"Mass\";
+    param c_body: N s/m = 2 in 0.5..20 \"Damper\";
+    param k_body: N/m = 700 in 100..2000 \"Spring\";
+    direction z {
+        mass body = m_body;
+        link own: body { spring k_body; damper c_body; }
+        output body.position;
+    }
+}
+";
+
 /// No sensor shows how fast it is at first.
 #[test]
 fn a_record_that_starts_in_motion_needs_no_input() {

@@ -57,8 +57,8 @@ use integration::AccuracyCheck;
 use probability::probabilities;
 use reduce::reductions;
 use set::{
-    Set, best_base, excess, explained_share, held_out_judge, is_missing, keep_best, leaves_more_than_noise, most_probable,
-    predicts_worse_than_noise,
+    Set, best_base, excess, explained_share, held_out_judge, is_missing, keep_best, leaves_more_than_noise,
+    most_probable, predicts_worse_than_noise,
 };
 use verdict::conclude;
 
@@ -371,7 +371,9 @@ fn refit_best(sets: &mut Vec<Set>, evidence: &Evidence) {
     }
     let is_open = |place: &usize| !sets[*place].refitted && sets[*place].names() == best.names();
     let open: Vec<usize> = (0..sets.len()).filter(is_open).collect();
-    let again = open.par_iter().filter_map(|&place| sets[place].from_small_discrepancy(evidence));
+    let again = open
+        .par_iter()
+        .filter_map(|&place| sets[place].from_small_discrepancy(evidence));
     let again: Vec<Set> = again.collect();
     open.iter().for_each(|&place| sets[place].refitted = true);
     again.into_iter().for_each(|own| keep_best(own, sets));

@@ -52,11 +52,7 @@ pub(super) fn described(finding: &Finding, among: usize, of: &BTreeMap<String, S
         share(finding.explained),
         table(finding, of)
     );
-    let undetermined = finding.parameters.iter().filter(|(_, _, error)| !error.is_finite());
-    let undetermined: Vec<&str> = undetermined.map(|(name, ..)| name.as_str()).collect();
-    if !undetermined.is_empty() {
-        let _ = writeln!(out, "the fitted runs do not determine {}", undetermined.join(", "));
-    }
+    out += &undetermined(finding);
     for rival in finding.rivals.iter().take(4) {
         let _ = writeln!(
             out,
@@ -64,6 +60,27 @@ pub(super) fn described(finding: &Finding, among: usize, of: &BTreeMap<String, S
             rival.effect,
             rival.at,
             number(rival.behind, 3)
+        );
+    }
+    out
+}
+
+/// Which parameters the fitted runs do not determine, or hardly.
+fn undetermined(finding: &Finding) -> String {
+    let named = |is: fn(f64, f64) -> bool| {
+        let own = finding.parameters.iter().filter(|(_, value, error)| is(*value, *error));
+        own.map(|(name, ..)| name.as_str()).collect::<Vec<_>>().join(", ")
+    };
+    let mut out = String::new();
+    let not = named(|_, error| !error.is_finite());
+    if !not.is_empty() {
+        let _ = writeln!(out, "the fitted runs do not determine {not}");
+    }
+    let hardly = named(|value, error| error.is_finite() && error > value.abs());
+    if !hardly.is_empty() {
+        let _ = writeln!(
+            out,
+            "the fitted runs hardly determine {hardly}: the standard error exceeds the value"
         );
     }
     out
@@ -80,7 +97,11 @@ mod tests {
             effect: "suspended_mass".into(),
             at: "body".into(),
             form: None,
-            parameters: vec![("m_pwt".into(), 107.3, 1.1), ("k_pwt_x".into(), 3e5, f64::NAN)],
+            parameters: vec![
+                ("m_pwt".into(), 107.3, 1.1),
+                ("k_pwt_x".into(), 3e5, f64::NAN),
+                ("c_pwt_x".into(), 200.0, 300.0),
+            ],
             evidence: 1e4,
             explained: None,
             rivals: Vec::new(),
@@ -90,6 +111,8 @@ mod tests {
             text.starts_with("suspended_mass at body has nothing to explain"),
             "{text}"
         );
-        assert!(text.ends_with("the fitted runs do not determine k_pwt_x\n"), "{text}");
+        let remarks = "the fitted runs do not determine k_pwt_x\n\
+                       the fitted runs hardly determine c_pwt_x: the standard error exceeds the value\n";
+        assert!(text.ends_with(remarks), "{text}");
     }
 }

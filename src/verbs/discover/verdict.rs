@@ -30,7 +30,11 @@ pub(crate) fn sentence(of: &Answer) -> String {
 /// What is left of a sensor, as the end of a sentence.
 fn remaining(share: &SensorShare<'_>) -> String {
     let percent = number(100.0 * share.missed(), 2);
-    format!("; {percent} % of {} in {} remains", channel(share.sensor), runs(share.kind))
+    format!(
+        "; {percent} % of {} in {} remains",
+        channel(share.sensor),
+        runs(share.kind)
+    )
 }
 
 /// True if there are findings and they leave large residuals.
