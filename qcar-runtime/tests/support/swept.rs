@@ -37,5 +37,6 @@ pub fn evidence(runs: Vec<Run>, series: Vec<Series>) -> Evidence {
         two_sided: false,
         notices: Vec::new(),
         numbers: Default::default(),
+        held_out_judge: true,
     }
 }
