@@ -9,6 +9,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
+use qcar_blind::hardware::Flaw;
 use qcar_blind::hidden::Hidden;
 use qcar_blind::matrix::cases;
 use qcar_blind::programme::Programme;
