@@ -114,9 +114,22 @@ pub fn or_dash(value: Option<f64>, digits: usize) -> String {
     value.map_or("-".into(), |value| number(value, digits))
 }
 
-/// Notices, one per line.
+/// Notices, one per line. Those that differ only by the run that they begin with are one: `a, b: what`.
 pub fn noted(of: &[String]) -> String {
-    of.iter().map(|notice| format!("note: {notice}\n")).collect()
+    let mut merged: Vec<(String, Option<&str>)> = Vec::new();
+    for notice in of {
+        let of_run = notice.split_once(": ").filter(|(run, _)| !run.contains(' '));
+        let (begin, what) = of_run.map_or((notice.as_str(), None), |(run, what)| (run, Some(what)));
+        match merged.iter_mut().find(|(_, other)| what.is_some() && *other == what) {
+            Some((runs, _)) => *runs += &format!(", {begin}"),
+            None => merged.push((begin.into(), what)),
+        }
+    }
+    let line = |(begin, what): &(String, Option<&str>)| match what {
+        Some(what) => format!("note: {begin}: {what}\n"),
+        None => format!("note: {begin}\n"),
+    };
+    merged.iter().map(line).collect()
 }
 
 /// Notices below a table, after an empty line; empty without any.
@@ -142,7 +155,7 @@ fn trimmed(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{Table, number};
+    use super::{Table, noted, number};
 
     #[test]
     fn numbers_keep_their_significant_digits() {
@@ -160,6 +173,13 @@ mod tests {
         for (value, text) in cases {
             assert_eq!(number(value, 6), text);
         }
+    }
+
+    #[test]
+    fn a_notice_of_several_runs_is_one() {
+        let all = ["a: no input", "the roads differ: why", "b: no input", "b: late"].map(String::from);
+        let lines = "note: a, b: no input\nnote: the roads differ: why\nnote: b: late\n";
+        assert_eq!(noted(&all), lines);
     }
 
     #[test]

@@ -192,7 +192,9 @@ impl Reader<'_> {
         let says = |name: &str| table.contains_key(name);
         let word = |name: &str| Some(table.get(name)?.get_ref().as_str()?.to_string());
         let (workbook, axle) = (word("workbook"), word("axle"));
-        if !says("parameters") && !says("vehicle") && !says("workbook") && self.problems.is_empty() {
+        // A campaign (it has a format) may leave all parameters to the model.
+        let may_be_empty = ["parameters", "vehicle", "workbook", "format"].into_iter().any(says);
+        if !may_be_empty && self.problems.is_empty() {
             let remedy = "write the values below a line [parameters]";
             let problem = Problem::new(
                 self.path,

@@ -9,7 +9,7 @@ use clap::Args;
 use clap_complete::engine::ArgValueCompleter;
 use qcar_dsl::check::Checked;
 use qcar_dsl::patch::Patched;
-use qcar_runtime::campaign::Campaign;
+use qcar_runtime::campaign::{Campaign, Role};
 use qcar_runtime::discover::answer::{Discovery, Finding, Update, Verdict};
 use qcar_runtime::discover::candidate::Workshop;
 use qcar_runtime::discover::numbers::Numbers;
@@ -49,6 +49,8 @@ pub(crate) mod result;
 mod text;
 // The residuals as a figure.
 mod figure;
+// Notices about sensors.
+mod notices;
 // Results of a search that was stopped.
 mod unfinished;
 
@@ -269,7 +271,8 @@ pub(crate) fn answer(
     out.inspect(|folder| leave(folder, Vec::new()));
     let discovery =
         discovery.map_err(|error| Failure::Input(format!("{}: {error}\n", campaign.manifest().display())))?;
-    evidence.notices.extend(offsets_of_the_model(&discovery));
+    let of_sensors = notices::of_sensors(&discovery, &evidence);
+    evidence.notices.extend(of_sensors);
     evidence.notices.extend(outside);
     // Without sweeps that the model can be compared with, there are no places.
     let [before, after] = [0, 1].map(|of| with_nuisances(bench.clone(), &discovery.nuisances[of]));
@@ -279,21 +282,12 @@ pub(crate) fn answer(
         sweeps,
         units: units(after.clone(), &discovery),
         learned: (discovery.learned.as_ref()).and_then(|learned| law::learned_model(before, learned)),
-        model: found(after, &discovery),
+        model: found(after, &discovery, &evidence),
         campaign: campaign.name.clone(),
         base_model,
         evidence,
         discovery,
         seconds: start.elapsed().as_secs_f64(),
-    })
-}
-
-/// A sentence for each sensor of a record without an offset of its own, because a parameter or state of the model acts
-/// as one.
-fn offsets_of_the_model(discovery: &Discovery) -> impl Iterator<Item = String> {
-    let without = &discovery.after.refit.nuisance.without_offset;
-    without.iter().map(|(sensor, own)| {
-        format!("{sensor}: `{own}` of the model is the offset of this sensor, so no other offset is estimated for it")
     })
 }
 
@@ -339,14 +333,16 @@ fn units(mut bench: Bench, discovery: &Discovery) -> Vec<BTreeMap<String, String
 }
 
 /// The model with the findings; `None` unless the verdict is `Found`.
-fn found(bench: Bench, discovery: &Discovery) -> Option<ExtendedModel> {
-    let (before, after) = (&discovery.before.misfit, &discovery.after.misfit);
-    let evidence = format!(
-        "Evidence: the RMS residual of held-out runs fell from {:.2} to {:.2} standard deviations.",
-        before.held_out, after.held_out
-    );
+fn found(bench: Bench, discovery: &Discovery, evidence: &Evidence) -> Option<ExtendedModel> {
+    let [before, after] = [&discovery.before, &discovery.after].map(|of| of.misfit.judged(evidence));
+    let runs = match evidence.judging() {
+        Role::HeldOut => "held-out",
+        Role::Fit => "fitted",
+    };
+    let why =
+        format!("Evidence: the RMS residual of {runs} runs fell from {before:.2} to {after:.2} standard deviations.");
     match discovery.verdict {
-        Verdict::Found => patched(bench, &discovery.findings, &evidence),
+        Verdict::Found => patched(bench, &discovery.findings, &why),
         _ => None,
     }
 }

@@ -137,11 +137,13 @@ fn check_time(table: &Table, time: &[f64], sample_rate: f64) -> Result<(), Input
             "sort the record, or remove duplicate samples",
         );
     }
-    let typical = steps::median(&intervals);
-    if !steps::is_one(typical, sample_rate) {
+    let short = |value: f64| format!("{value:.5e}").parse::<f64>().unwrap_or(value);
+    let (typical, mean) = (steps::median(&intervals), (time[last] - time[0]) / last as f64);
+    // Printed times are rounded, which changes the median, and a gap changes the mean.
+    if ![typical, mean].iter().any(|&step| steps::is_near(step, sample_rate)) {
         let (found, expected) = (
-            format!("steps of {typical} s"),
-            format!("steps of {dt} s by `sample_rate = {sample_rate}`"),
+            format!("steps of {} s", short(typical)),
+            format!("steps of {} s by `sample_rate = {sample_rate}`", short(dt)),
         );
         return at(
             1,
@@ -151,14 +153,14 @@ fn check_time(table: &Table, time: &[f64], sample_rate: f64) -> Result<(), Input
         );
     }
     if let Some(row) = intervals.iter().position(|&step| !steps::is_one(step, sample_rate)) {
-        let found = format!("a step of {} s", intervals[row]);
+        let found = format!("a step of {} s", short(intervals[row]));
         let remedy = "a gap cannot be filled: export the record again, or cut it before the gap";
-        return at(row + 1, found, format!("a step of {dt} s"), remedy);
+        return at(row + 1, found, format!("a step of {} s", short(dt)), remedy);
     }
-    let measured = last as f64 / (time[last] - time[0]);
+    let measured = 1.0 / mean;
     if !steps::agree(measured, sample_rate, last) {
         let (found, expected) = (
-            format!("{measured} samples a second"),
+            format!("{} samples a second", short(measured)),
             format!("`sample_rate = {sample_rate}`"),
         );
         return at(last, found, expected, "correct `sample_rate` in campaign.toml");

@@ -25,6 +25,7 @@ fn description(flaw: &Flaw, unit: &str) -> String {
         shown(format!("{value:.3e}").parse().unwrap_or(value), unit)
     });
     match flaw.kind {
+        FlawKind::Dead(0.0) => "every sample is 0: the channel is dead, or there was nothing to measure".into(),
         FlawKind::Dead(value) => format!("every sample is {}: the channel is dead", shown(value, unit)),
         FlawKind::Clipped(value) => format!(
             "{count} samples are cut off at {}: the channel is clipped",

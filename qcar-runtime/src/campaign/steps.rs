@@ -7,10 +7,19 @@ const RATE_TOLERANCE: f64 = 1e-3;
 /// Largest relative deviation of a step from the mean if the shortest and the longest step are to count as equal.
 const ALIKE: f64 = 0.1;
 
+/// Largest relative deviation of a typical step from one sample. The most usual mistake is a rate that was halved or
+/// doubled.
+const NEAR: f64 = 0.25;
+
 /// True if a step is one sample long, instead of none or two. Printed times are rounded, so a single step is only this
 /// accurate.
 pub(super) fn is_one(step: f64, rate: f64) -> bool {
     (0.5..=1.5).contains(&(step * rate))
+}
+
+/// True if a typical or mean step (s) is one sample long and not, say, two.
+pub(super) fn is_near(step: f64, rate: f64) -> bool {
+    (step * rate - 1.0).abs() < NEAR
 }
 
 /// True if all steps are one sample long: none differs from the mean by more than a tenth.

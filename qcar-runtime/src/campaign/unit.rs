@@ -1,4 +1,4 @@
-//! SI units of campaigns: `N s/m`, `N*s/m`, `kg m^2`, `m/s^2`, `1`; and other units of files.
+//! SI units of campaigns: `N s/m`, `N*s/m`, `kg m^2`, `m/s^2`, `m/s²`, `1`; and other units of files.
 
 use qcar_signals::si::in_si;
 
@@ -9,7 +9,8 @@ pub type Dimension = [i32; 3];
 ///
 /// Everything after the one `/` divides: `N s/m`, `m/s^2`; another needs parentheses, `N/(m/s)`.
 pub fn dimension(unit: &str) -> Option<Dimension> {
-    let spaced = unit.replace('*', " ").replace(" ^ ", "^");
+    let plain = unit.replace('²', "^2").replace('³', "^3");
+    let spaced = plain.replace(['*', '·'], " ").replace(" ^ ", "^");
     let Some((above, below)) = spaced.split_once('/') else {
         return product(&spaced);
     };
@@ -204,10 +205,11 @@ mod tests {
     fn spellings_of_one_unit_agree() {
         let damping = dimension("N s/m");
         assert_eq!(damping, Some([1, 0, -1]));
-        for spelling in ["N*s/m", "N s / m", "N/(m/s)", "kg/s", "s N/m"] {
+        for spelling in ["N*s/m", "N·s/m", "N s / m", "N/(m/s)", "kg/s", "s N/m"] {
             assert_eq!(dimension(spelling), damping, "{spelling}");
         }
         assert_eq!(dimension("m/s^2"), Some([0, 1, -2]));
+        assert_eq!(dimension("m/s²"), Some([0, 1, -2]));
         assert_eq!(dimension("1"), Some([0, 0, 0]));
     }
 

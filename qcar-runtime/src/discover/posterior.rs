@@ -41,6 +41,8 @@ mod initial_states;
 mod misfit;
 // The residual of each sensor as a share of its signal.
 mod sensor_share;
+// Sensors whose sign is probably wrong.
+mod reversed;
 // Explanation of the evidence by a model.
 mod explain;
 
@@ -51,5 +53,6 @@ pub use initial_states::estimate_initial_states;
 pub use misfit::{Misfit, Tile};
 pub use refit::Refit;
 pub use search::DECREMENT;
+pub use reversed::ReversedSensor;
 pub use sensor_share::SensorShare;
 pub use unsteady::add_unsteady;

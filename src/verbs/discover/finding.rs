@@ -56,7 +56,7 @@ pub(super) fn described(finding: &Finding, among: usize, of: &BTreeMap<String, S
     for rival in finding.rivals.iter().take(4) {
         let _ = writeln!(
             out,
-            "less likely: {} at {}, lower by {} in log evidence",
+            "less likely instead: {} at {}, lower by {} in log evidence",
             rival.effect,
             rival.at,
             number(rival.behind, 3)

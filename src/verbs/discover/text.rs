@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use qcar_runtime::discover::answer::{Probable, Verdict};
+use qcar_runtime::discover::answer::Verdict;
 use qcar_runtime::discover::observe::Kind;
 use qcar_runtime::discover::posterior::Explanation;
 
@@ -27,13 +27,14 @@ pub(super) fn text(of: &Answer) -> String {
         ("fit", before.fit, after.fit),
         ("held_out", before.held_out, after.held_out),
     ] {
-        residuals.row(vec![name.into(), number(before, 3), number(after, 3)]);
+        let [before, after] = [before, after].map(|value| or_dash(value.is_finite().then_some(value), 3));
+        residuals.row(vec![name.into(), before, after]);
     }
     out += &residuals.text();
     if let Some(probability) = of.discovery.probability {
         let _ = writeln!(out, "\nprobability of this answer: {probability:.3}");
     }
-    out += &candidates(&of.discovery.candidates);
+    out += &candidates(of);
     out += &remaining(of);
     let certain = of.discovery.certain_and_alternatives().0.len();
     for (place, (finding, units)) in of.discovery.findings.iter().zip(&of.units).enumerate() {
@@ -52,12 +53,14 @@ pub(super) fn text(of: &Answer) -> String {
     }
     if of.discovery.verdict != Verdict::None {
         out += &format!("\nlargest residuals of the campaign's model\n{}", tiles(of));
+    }
+    if of.discovery.verdict == Verdict::Unknown {
         out += &missing(of).first().map_or_else(String::new, PlaceStiffness::sentence);
     }
     out += &learned::text(of);
     if !of.discovery.detection_limits.is_empty() {
         out += &format!(
-            "\neffects that would have been found: their size relative to the smallest that is certain\n{}",
+            "\ndetection limits: a usual size of each effect, relative to the smallest that would be found\n{}",
             detection_limits(of)
         );
     }
@@ -76,11 +79,17 @@ fn last(of: &Answer) -> (&'static str, &Explanation) {
 }
 
 /// The most probable effects as a table; empty without any. An effect of an answer with several may explain little
-/// alone, so the columns say that they are of the effect alone.
-fn candidates(all: &[Probable]) -> String {
+/// alone, so the columns say that they are of the effect alone. If a law was learned, the title says that the
+/// probabilities do not include it.
+fn candidates(of: &Answer) -> String {
+    let all = &of.discovery.candidates;
     if all.is_empty() {
         return String::new();
     }
+    let title = match of.discovery.learned {
+        Some(_) => "effects of the catalogue, compared with each other and not with the law\n",
+        None => "",
+    };
     let mut table = Table::new([
         "candidate",
         "at",
@@ -97,7 +106,7 @@ fn candidates(all: &[Probable]) -> String {
             or_dash(own.log_evidence, 4),
         ]);
     }
-    format!("\n{}", table.text())
+    format!("\n{title}{}", table.text())
 }
 
 /// Residual of each sensor.

@@ -52,13 +52,15 @@ fn largest_residual(of: &Answer) -> Option<SensorShare<'_>> {
 }
 
 /// The verdict `Unknown` as a sentence. If only the held-out runs show that something is missing, it says so: these runs
-/// may be of another state of the axle than the fitted ones.
+/// may be of another state of the axle than the fitted ones. If neither shows large residuals, nothing certain is missing.
 fn unexplained(of: &Answer) -> String {
     let gap = &of.discovery.before.misfit;
     let missing = "something is missing that no effect of the catalogue explains";
     if gap.fit <= LARGE && gap.held_out > LARGE && of.discovery.learned.is_none() {
         let left = number(gap.held_out, 3);
         format!("{missing}: only the held-out runs show it, with residuals of {left} standard deviations")
+    } else if gap.fit <= LARGE && !(gap.held_out > LARGE) {
+        "small residuals above noise remain that no effect of the catalogue explains".into()
     } else {
         missing.into()
     }

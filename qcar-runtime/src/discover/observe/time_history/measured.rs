@@ -101,7 +101,7 @@ impl Evidence {
                 .push(format!("{run}: no response was recorded; the run is left out"));
             return Ok(None);
         }
-        if inputs.is_empty() {
+        if inputs.is_empty() && !about.excitations.is_empty() {
             self.notices.push(format!(
                 "{run}: no input of the model was recorded; the run is taken for one that nothing drives"
             ));
