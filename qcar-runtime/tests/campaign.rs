@@ -393,7 +393,11 @@ const MISTAKES: &[(&str, (&str, &str, &str))] = &[
     ),
     (
         "a sample rate that is a little off",
-        ("campaign.toml", "sample_rate = 610.35", "sample_rate = 800.0"),
+        ("campaign.toml", "sample_rate = 610.35", "sample_rate = 650.0"),
+    ),
+    (
+        "half the sample rate",
+        ("campaign.toml", "sample_rate = 610.35", "sample_rate = 305.0"),
     ),
     ("single sample", ("cleat.csv.gz", "0.01,0.25\n0.02,0.125\n", "")),
     ("no channel", ("random.csv", RANDOM, "time\n0\n0.0016\n")),

@@ -348,6 +348,7 @@ fn a_model_without_inputs_decays_freely() {
     succeeds(&["simulate", path]);
     let (found, answer) = discovered_into(&folder.path().join("out"), path);
     assert_eq!(answer["verdict"], "none", "{found}");
+    assert!(!found.contains("no input"), "{found}");
 }
 
 const FREE: &str = "axle free {

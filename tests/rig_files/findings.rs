@@ -169,20 +169,34 @@ fn plain_tables_are_checked_too() {
     let keys = "unit = \"m/s^2\"";
     let sweep = "[[run]]\nkind = \"sweep\"\nfile = \"rig.csv\"\nrole = \"fit\"\npeak_velocity = 0.1\nstart_frequency = 1\n\
                  end_frequency = 10\nspacing = \"linear\"\nsample_rate = 100\n";
-    let rows = (0..500).map(|k| format!("{:.2},{:.5},0.5\n", f64::from(k) / 100.0, (0.3 * f64::from(k)).sin()));
-    let table = "time,pad_left_z,body_left_z\n".to_string() + &rows.collect::<String>();
-    let folder = folder(
-        &(channel("pad", keys) + &channel("body", keys) + sweep),
-        ("rig.csv", table.as_bytes()),
-    );
-    assert_eq!(open(folder.path()).unwrap().notices, [] as [&str; 0]);
-    let (status, said) = qcar(folder.path(), "check .");
-    assert_eq!(status, 1, "{said}");
-    assert!(said.starts_with(".: not fit for a fit\n"), "{said}");
-    assert!(
-        said.contains("rig.csv, `body_left_z`, 0.000 s to 4.990 s: every sample is 0.5 m/s^2: the channel is dead"),
-        "{said}"
-    );
+    for (constant, flaw) in [
+        ("0.5", "every sample is 0.5 m/s^2: the channel is dead"),
+        (
+            "0.0",
+            "every sample is 0: the channel is dead, or there was nothing to measure",
+        ),
+    ] {
+        let row = |k: i32| {
+            format!(
+                "{:.2},{:.5},{constant}\n",
+                f64::from(k) / 100.0,
+                (0.3 * f64::from(k)).sin()
+            )
+        };
+        let table = "time,pad_left_z,body_left_z\n".to_string() + &(0..500).map(row).collect::<String>();
+        let folder = folder(
+            &(channel("pad", keys) + &channel("body", keys) + sweep),
+            ("rig.csv", table.as_bytes()),
+        );
+        assert_eq!(open(folder.path()).unwrap().notices, [] as [&str; 0]);
+        let (status, said) = qcar(folder.path(), "check .");
+        assert_eq!(status, 1, "{said}");
+        assert!(said.starts_with(".: not fit for a fit\n"), "{said}");
+        assert!(
+            said.contains(&format!("rig.csv, `body_left_z`, 0.000 s to 4.990 s: {flaw}")),
+            "{said}"
+        );
+    }
 }
 
 /// Gravity of 1 m/s^2, and a wheel that travels by metres.

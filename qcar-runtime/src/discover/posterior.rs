@@ -52,7 +52,7 @@ pub use fit::{Start, fit, refit, refit_with};
 pub use initial_states::estimate_initial_states;
 pub use misfit::{Misfit, Tile};
 pub use refit::Refit;
-pub use search::DECREMENT;
 pub use reversed::ReversedSensor;
+pub use search::DECREMENT;
 pub use sensor_share::SensorShare;
 pub use unsteady::add_unsteady;

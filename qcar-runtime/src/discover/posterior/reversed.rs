@@ -72,5 +72,8 @@ fn reversed<'a>(series: &'a Series, residuals: &'a [f64]) -> impl Iterator<Item 
         let scale = (parts as f64).sqrt() / sigma;
         [(value.re - mean) * scale, value.im * scale].into_iter().take(parts)
     });
-    residuals.iter().zip(measured).map(|(residual, measured)| residual - 2.0 * measured)
+    residuals
+        .iter()
+        .zip(measured)
+        .map(|(residual, measured)| residual - 2.0 * measured)
 }
