@@ -1,8 +1,9 @@
 //! Amplitudes of the parts of a model in a campaign, computed with the model without effects. The ranges of effects are
 //! relative to them.
 //!
-//! A sweep counts with its measured amplitude, line by line; any other record with the RMS of its input. The amplitudes
-//! follow from the linear response of the model about rest. A measured force of a link is used directly.
+//! A sweep counts with its measured amplitude, line by line; any other record with the RMS of its input. A record
+//! without inputs counts as if a force at the mass of each sensor caused its signal. The amplitudes follow from the linear
+//! response of the model about rest. A measured force of a link is used directly.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -10,11 +11,11 @@ use std::f64::consts::TAU;
 use qcar_dsl::check::Checked;
 use qcar_dsl::compile::derive_wanted;
 use qcar_dsl::evaluate::Evaluator;
-use qcar_dsl::patch::{Scale, with_all_outputs};
+use qcar_dsl::patch::{Scale, is_push, push, with_all_outputs};
 use qcar_dsl::response::Wanted;
 use qcar_runtime::campaign::{Quantity as Measured, Role};
 use qcar_runtime::discover::Evidence;
-use qcar_runtime::discover::observe::{Kind, Run, Stimulus, signal_of};
+use qcar_runtime::discover::observe::{Kind, Run, Series, Stimulus, signal_of};
 use qcar_runtime::model::{About, Excitation, Model, Quantity, Signal, SignalKind};
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::response::ratio::Ratios;
@@ -24,6 +25,10 @@ use qcar_runtime::transmissibility::Point;
 /// Frequencies at which a record is evaluated. Thirds of an octave are coarse for a resonance, but only the order of
 /// magnitude matters.
 const BANDS_PER_OCTAVE: f64 = 3.0;
+
+/// Amplitude relative to the largest below which a band of a record without inputs is left out: it may be noise or drift,
+/// which would be a large travel at low frequency. A choice; only the order of magnitude matters.
+const SMALL: f64 = 0.1;
 
 /// Excitation of a run, as amplitudes of a sensor at frequencies (Hz).
 struct RunExcitation<'a> {
@@ -48,17 +53,33 @@ pub fn scales(model: &Checked, values: &BTreeMap<String, f64>, evidence: &Eviden
     let fitted = evidence.runs.iter().filter(|run| run.role == Role::Fit);
     let mut ratios = Ratios::new(&shown, &values);
     for driven in fitted.flat_map(driven) {
-        let Some(excitation) = excitation(shown.about(), driven.reference) else {
-            continue;
-        };
-        for signal in parts(shown.about()) {
-            for (name, amplitude) in amplitudes(&mut ratios, excitation, &driven, &signal) {
-                raise(&mut found, name, amplitude);
-            }
+        if let Some(excitation) = excitation(shown.about(), driven.reference) {
+            raise_all(&mut found, &mut ratios, excitation, &driven);
+        }
+    }
+    for free in free(evidence) {
+        let own = push(free.reference.axis.name(), &free.reference.location);
+        let excitation = shown.about().excitations.iter().position(|input| input.name == own);
+        if let Some(excitation) = excitation {
+            raise_all(&mut found, &mut ratios, excitation, &free);
         }
     }
     found.extend(measured(shown.about(), evidence));
     found
+}
+
+/// The amplitudes of all parts under an excitation.
+fn raise_all(
+    found: &mut BTreeMap<String, f64>,
+    ratios: &mut Ratios<'_, Evaluator>,
+    excitation: usize,
+    driven: &RunExcitation<'_>,
+) {
+    for signal in parts(ratios.about()) {
+        for (name, amplitude) in amplitudes(ratios, excitation, driven, &signal) {
+            raise(found, name, amplitude);
+        }
+    }
 }
 
 /// Keeps the larger of two amplitudes.
@@ -90,6 +111,25 @@ fn driven(run: &Run) -> Vec<RunExcitation<'_>> {
         }
         Stimulus::Cleat(_) | Stimulus::Travel { .. } | Stimulus::Sine { .. } | Stimulus::Dynamometer { .. } => vec![],
     }
+}
+
+/// Signals of the fitted records without inputs.
+fn free(evidence: &Evidence) -> impl Iterator<Item = RunExcitation<'_>> {
+    let free = |series: &Series| match &evidence.runs[series.run].stimulus {
+        Stimulus::History { inputs, rate, .. } => inputs.signals.is_empty().then_some(*rate),
+        _ => None,
+    };
+    evidence.of_role(Role::Fit).filter_map(move |(_, series)| {
+        let rate = free(series)?;
+        let samples: Vec<f64> = series.value.iter().map(|value| value.re).collect();
+        let mut signal = recorded(&series.sensor, &samples, rate);
+        let largest = signal.amplitude.iter().copied().fold(0.0, f64::max);
+        let amplitudes = signal.amplitude.iter_mut();
+        amplitudes
+            .filter(|own| **own < SMALL * largest)
+            .for_each(|own| *own = 0.0);
+        Some(signal)
+    })
 }
 
 /// Amplitude of a record in each frequency band.
@@ -164,7 +204,7 @@ fn amplitudes(
 
 /// The input that a sensor measures: that at its own place, or the only one along its axis.
 fn excitation(about: &About, reference: &Point) -> Option<usize> {
-    let along = |own: &Excitation| own.axis == reference.axis.name();
+    let along = |own: &Excitation| own.axis == reference.axis.name() && !is_push(&own.name);
     let own = about
         .excitations
         .iter()

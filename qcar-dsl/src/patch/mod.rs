@@ -39,7 +39,7 @@ pub mod difference;
 
 use std::borrow::Cow;
 
-pub use all_outputs::with_all_outputs;
+pub use all_outputs::{is_push, push, with_all_outputs};
 use bind::Bindings;
 pub use curve::{Curve, Ordinate};
 pub(crate) use model_tree::ModelTree;
