@@ -228,16 +228,13 @@ impl<'a> Section<'a> {
 
     /// One of several words.
     pub fn choice<T: Copy>(&self, key: &'static str, names: &[(&'static str, T)]) -> Option<T> {
+        let words: Vec<_> = names.iter().map(|(name, _)| format!("\"{name}\"")).collect();
+        let words = words.join(" or ");
+        self.required(key, &words)?;
         let text = self.text(key)?;
         let choice = names.iter().find(|(name, _)| *name == text).map(|&(_, choice)| choice);
         if choice.is_none() {
-            let words: Vec<_> = names.iter().map(|(name, _)| format!("\"{name}\"")).collect();
-            self.wrong(
-                key,
-                format!("\"{text}\""),
-                words.join(" or "),
-                "write one of these words",
-            );
+            self.wrong(key, format!("\"{text}\""), words, "write one of these words");
         }
         choice
     }
