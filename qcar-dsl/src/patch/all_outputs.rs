@@ -1,10 +1,10 @@
 //! A model that outputs the motion of all its parts, with a force input at each mass.
 
 use super::model_tree::{ModelTree, coordinates, links};
+use super::rewrite::named;
 use crate::check::Checked;
 use crate::check::check_text;
 use crate::diagnostic::Report;
-use super::rewrite::named;
 use crate::front::syntax::{CoordinateKind, Direction, Dotted, Name, Statement};
 use crate::source::Source;
 

@@ -105,12 +105,13 @@ pub fn discover(
         let mut sets = sets;
         evidence.held_out_judge = held_out_judge(&sets[0], evidence);
         loop {
-            if let Some(searched) = attempt(sets, evidence, progress) {
-                return Ok::<_, PredictError>(searched);
-            }
-            progress(Update::Step("repeating the search with a more accurate integration"));
+            let found = match attempt(sets, evidence, progress) {
+                Ok(searched) => return Ok::<_, PredictError>(searched),
+                Err(found) => found,
+            };
+            progress(Update::Step("continuing the search with a more accurate integration"));
             *evidence = evidence.integrated_with(Accuracy::HIGH);
-            sets = vec![fitted(evidence)?];
+            sets = fitted_to(evidence, fitted(evidence)?, &found);
         }
     };
     let searched = search(vec![base], evidence)?;
@@ -131,7 +132,9 @@ pub fn discover(
     progress(Update::Step(
         "continuing the search without the noise of the recorded inputs",
     ));
-    let searched = search(searched.fitted_to(fitted(evidence)?, evidence), evidence)?;
+    let mut base = fitted(evidence)?;
+    base.extended = searched.sets[0].extended;
+    let searched = search(fitted_to(evidence, base, &searched.sets), evidence)?;
     evidence.notices.extend(searched.found().note_on_sensors());
     Ok(searched.discovery)
 }
@@ -148,19 +151,18 @@ impl Searched {
     fn found(&self) -> &Set {
         &self.sets[self.found]
     }
+}
 
-    /// The sets for nearly the same data, beside the base model that is fitted to them. The most probable one is to be
-    /// extended again: the change may have uncovered a further effect.
-    fn fitted_to(self, mut base: Set, evidence: &Evidence) -> Vec<Set> {
-        let others = self.sets.par_iter().skip(1);
-        let others: Vec<Set> = others.filter_map(|own| own.fitted_to(evidence)).collect();
-        base.extended = self.sets[0].extended;
-        let mut sets = vec![base];
-        sets.extend(others);
-        let best = best(&sets);
-        sets[best].extended = false;
-        sets
-    }
+/// The sets of a search for nearly the same data, beside the base model that is fitted to them. The most probable one is
+/// to be extended again: the change may have uncovered a further effect.
+fn fitted_to(evidence: &Evidence, base: Set, found: &[Set]) -> Vec<Set> {
+    let others = found.par_iter().skip(1);
+    let others: Vec<Set> = others.filter_map(|own| own.fitted_to(evidence)).collect();
+    let mut sets = vec![base];
+    sets.extend(others);
+    let best = best(&sets);
+    sets[best].extended = false;
+    sets
 }
 
 /// True if the same responses are more probable with the other data, by the odds of a certain answer.
@@ -168,9 +170,9 @@ fn is_more_probable(log_evidence: f64, than: &Set, evidence: &Evidence) -> bool 
     log_evidence - than.explanation.refit.log_evidence > evidence.numbers.odds_of_certain().ln()
 }
 
-/// The search from fitted sets, of which the first is the base model; `None` as soon as the error of the integration of
-/// records could change the answer.
-fn attempt(mut sets: Vec<Set>, evidence: &Evidence, progress: Progress<'_>) -> Option<Searched> {
+/// The search from fitted sets, of which the first is the base model. As soon as the error of the integration of records
+/// could change the answer, it ends with the sets that it has found.
+fn attempt(mut sets: Vec<Set>, evidence: &Evidence, progress: Progress<'_>) -> Result<Searched, Vec<Set>> {
     let text = format!(
         "the base model alone leaves {}",
         rms_text(&sets[0].explanation, evidence)
@@ -191,7 +193,9 @@ fn attempt(mut sets: Vec<Set>, evidence: &Evidence, progress: Progress<'_>) -> O
             sets.extend(others);
         }
         refit_best(&mut sets, evidence);
-        accuracy.suffices(&sets)?;
+        if !accuracy.suffices(&sets) {
+            return Err(sets);
+        }
         report(&sets[best(&sets)], evidence, progress);
     }
     // Remove effects that the evidence no longer supports beside those found later.
@@ -207,10 +211,14 @@ fn attempt(mut sets: Vec<Set>, evidence: &Evidence, progress: Progress<'_>) -> O
         sets.extend(others);
     }
     refit_best(&mut sets, evidence);
-    accuracy.suffices(&sets)?;
+    if !accuracy.suffices(&sets) {
+        return Err(sets);
+    }
     let (mut discovery, mut found) = conclude(&sets, evidence);
     if let Some(mended) = accuracy.mended(&sets[found]) {
-        accuracy.is_settled(&mended, &sets[found])?;
+        if !accuracy.is_settled(&mended, &sets[found]) {
+            return Err(sets);
+        }
         sets[found] = mended;
         (discovery, found) = conclude(&sets, evidence);
     }
@@ -218,7 +226,7 @@ fn attempt(mut sets: Vec<Set>, evidence: &Evidence, progress: Progress<'_>) -> O
     if discovery.verdict == Verdict::None {
         discovery.detection_limits = limits(&sets[best_base(&sets)], evidence);
     }
-    Some(Searched { discovery, sets, found })
+    Ok(Searched { discovery, sets, found })
 }
 
 /// Learns a law if the answer needs one, and replaces the findings by it if it is certainly more probable or explains

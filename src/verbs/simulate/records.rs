@@ -95,7 +95,15 @@ fn simulated(model: &dyn Model, values: &Values, evidence: &Evidence) -> Result<
     let nuisance = Nuisance::of(evidence);
     let right = vec![0.0; nuisance.count()];
     let mut conditions = TestConditions::default();
-    estimate_initial_states(model, values, (&nuisance, &right), evidence, Role::Fit, &mut conditions)?;
+    let sensors = (&nuisance, right.as_slice());
+    estimate_initial_states(
+        model,
+        values,
+        sensors,
+        evidence,
+        |run| run.role == Role::Fit,
+        &mut conditions,
+    )?;
     let runs = 0..evidence.runs.len();
     runs.map(|run| replayed(model, values, &conditions, evidence, run))
         .collect()

@@ -164,6 +164,14 @@ impl Stimulus {
         }
     }
 
+    /// True for a record at whose beginning no sensor shows a position or a velocity.
+    pub fn begins_unmeasured(&self) -> bool {
+        let Stimulus::History { restarts, .. } = self else {
+            return false;
+        };
+        restarts.first().is_some_and(|first| first.readings.is_empty())
+    }
+
     /// Sensors that record the excitation: one of a sweep, one for each input of a history. None for a road, a K&C or
     /// dynamometer test, and a free decay.
     pub fn references(&self) -> Vec<&Point> {

@@ -1,10 +1,12 @@
 //! Fits of a model, with a discrepancy or against noise alone.
 
+use super::initial_states::estimate_initial_states;
 use super::offset;
 use super::problem::Posterior;
 use super::refit::Refit;
+use crate::campaign::Role;
 use crate::discover::noise::{Discrepancy, InitialState, Nuisance};
-use crate::discover::observe::{Evidence, Free, PredictError};
+use crate::discover::observe::{Evidence, Free, PredictError, Run};
 use crate::least_squares::Problem;
 use crate::model::Model;
 use crate::response::parameters::Values;
@@ -79,14 +81,8 @@ pub fn fit(
         .collect();
     place.extend(errors);
     place.resize(free.len() + nuisance.of_sensors(), 0.0);
-    let initial = |own: &InitialState| {
-        let known = start
-            .initial_states
-            .iter()
-            .find(|(known, _)| known.run == own.run && known.state == own.state);
-        known.map_or(0.0, |(_, value)| *value)
-    };
-    place.extend(nuisance.initial_states.iter().map(initial));
+    let initial_states = initial_states(model, &start, &nuisance, &place[free.len()..], evidence)?;
+    place.extend(initial_states);
     place.extend(factors);
     let mut posterior = Posterior::new(model, start.values.clone(), free, evidence, nuisance);
     posterior.discrepancy = Some(start.discrepancy);
@@ -95,4 +91,36 @@ pub fn fit(
     posterior.centre = start.centre.clone();
     place.resize(posterior.variables(), 0.0);
     posterior.fit(place, rounds, evaluations)
+}
+
+/// Initial states at the start of a fit. Those of a record of which the start knows none, and no sensor shows any, are
+/// estimated if the model is nonlinear: from rest, a fit would hardly see a law that acts at large travels only.
+fn initial_states(
+    model: &dyn Model,
+    start: &Start<'_>,
+    nuisance: &Nuisance,
+    errors: &[f64],
+    evidence: &Evidence,
+) -> Result<Vec<f64>, PredictError> {
+    let mut coefficients = errors.to_vec();
+    coefficients.resize(nuisance.count(), 0.0);
+    let mut conditions = nuisance.conditions(evidence, &coefficients);
+    if !model.about().linear {
+        let is_known = |run: &Run| start.initial_states.iter().any(|(known, _)| known.run == run.name);
+        let is_wanted = |run: &Run| run.role == Role::Fit && run.stimulus.begins_unmeasured() && !is_known(run);
+        let sensors = (nuisance, coefficients.as_slice());
+        estimate_initial_states(model, start.values, sensors, evidence, is_wanted, &mut conditions)?;
+    }
+    let value = |own: &InitialState| {
+        let is_it = |(known, _): &&(InitialState, f64)| known.run == own.run && known.state == own.state;
+        let known = start.initial_states.iter().find(is_it).map(|(_, value)| *value);
+        let estimated = || {
+            let run = evidence.runs.iter().position(|run| run.name == own.run)?;
+            let states = conditions.initial_states[run].iter();
+            let mut at_start = states.filter(|of| of.sample == 0 && of.state == own.state);
+            at_start.next().map(|of| of.by)
+        };
+        known.or_else(estimated).unwrap_or(0.0)
+    };
+    Ok(nuisance.initial_states.iter().map(value).collect())
 }

@@ -1,18 +1,21 @@
-//! Initial states of held-out records, estimated from these records.
+//! Initial states of records, estimated from these records with all parameters fixed: of held-out records, and of fitted
+//! ones at the start of a fit.
 //!
-//! Sensors do not measure all states of the masses at the first sample, in a held-out record as in a fitted one, and where
-//! a record restarts, their readings are noisy. With all fitted parameters fixed, the maximum a posteriori of these states
-//! is found by Gauss-Newton steps. For a linear model the first step is exact.
+//! Sensors do not measure all states of the masses at the first sample, and where a record restarts, their readings are
+//! noisy. The maximum a posteriori of these states is found by Gauss-Newton steps. For a linear model the first step is exact. Where they end in a local minimum of a
+//! nonlinear model, they begin with a short part of the record and continue with parts twice as long.
 
 use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::campaign::Role;
 use crate::discover::noise::Nuisance;
+use crate::discover::numbers::LARGE;
 use crate::discover::observe::{
-    Evidence, Initial, PredictError, Prediction, Restart, Stimulus, TestConditions, measures, predict_by_initial_states,
+    Evidence, Initial, PredictError, Prediction, Restart, Run, Series, Stimulus, TestConditions, measures,
+    predict_by_initial_states,
 };
+use crate::mean::rms_or_nan;
 use crate::model::Model;
 use crate::response::parameters::Values;
 use crate::transmissibility::Point;
@@ -21,39 +24,124 @@ use crate::transmissibility::Point;
 const STEPS: usize = 10;
 /// Factor on a step that was too long.
 const SHORTER: f64 = 0.25;
+/// Mean periods in the shortest part of a record. A choice: within half a period, no phase error can add up.
+const SHORTEST: f64 = 0.5;
 /// Relative decrease of the sum of squares below which the steps end.
 const CONVERGED: f64 = 1e-4;
 
-/// Completes `conditions` with the initial states of the records of one role, for these coefficients of the sensor
-/// errors.
+/// Completes `conditions` with the initial states of some records, for these coefficients of the sensor errors.
 ///
 /// # Errors
 /// Fails if the model lacks a measured quantity.
 pub fn estimate_initial_states(
     model: &dyn Model,
     values: &Values,
-    (nuisance, coefficients): (&Nuisance, &[f64]),
+    sensors: (&Nuisance, &[f64]),
     evidence: &Evidence,
-    role: Role,
+    is_wanted: impl Fn(&Run) -> bool,
     conditions: &mut TestConditions,
 ) -> Result<(), PredictError> {
     conditions.initial_states.resize(evidence.runs.len(), Vec::new());
-    for (place, run) in evidence.runs.iter().enumerate().filter(|(_, run)| run.role == role) {
-        let unknown = unknown(model, values.as_slice(), &run.stimulus);
-        if unknown.is_empty() {
-            continue;
+    for (place, run) in evidence.runs.iter().enumerate().filter(|(_, run)| is_wanted(run)) {
+        let record = Record {
+            model,
+            values,
+            sensors,
+            place,
+            unknown: unknown(model, values.as_slice(), &run.stimulus),
+        };
+        if !record.unknown.is_empty() {
+            conditions.initial_states[place] = record.best(evidence, conditions)?;
         }
-        conditions.initial_states[place] = unknown.iter().map(Unknown::as_measured).collect();
-        let mut best = (f64::INFINITY, conditions.initial_states[place].clone());
-        let mut step = DVector::zeros(unknown.len());
+    }
+    Ok(())
+}
+
+/// A record with unknown initial states.
+struct Record<'a> {
+    model: &'a dyn Model,
+    values: &'a Values,
+    /// Sensor errors and their coefficients.
+    sensors: (&'a Nuisance, &'a [f64]),
+    /// Position of its run in the evidence.
+    place: usize,
+    unknown: Vec<Unknown>,
+}
+
+/// Estimated initial states of a record.
+struct Estimate {
+    states: Vec<Initial>,
+    /// Sum of squares of the normalised residuals and of the distances from the prior.
+    cost: f64,
+    /// True if the residuals are larger than noise explains.
+    is_poor: bool,
+}
+
+impl Record<'_> {
+    /// The best estimate. Gauss-Newton steps from the measured states may end in a local minimum of a nonlinear model,
+    /// because the phase error adds up along the record. Then the estimate begins with a short part of it.
+    fn best(&self, evidence: &Evidence, conditions: &mut TestConditions) -> Result<Vec<Initial>, PredictError> {
+        let as_measured: Vec<Initial> = self.unknown.iter().map(Unknown::as_measured).collect();
+        let direct = self.estimate(as_measured.clone(), evidence, conditions)?;
+        if self.model.about().linear || !direct.is_poor {
+            return Ok(direct.states);
+        }
+        let mut grown = as_measured;
+        for part in self.beginnings(evidence).iter().rev() {
+            grown = self.estimate(grown, part, conditions)?.states;
+        }
+        let grown = self.estimate(grown, evidence, conditions)?;
+        Ok(if grown.cost < direct.cost {
+            grown.states
+        } else {
+            direct.states
+        })
+    }
+
+    /// Beginnings of the record, each half as long as the one before, down to [`SHORTEST`].
+    fn beginnings(&self, evidence: &Evidence) -> Vec<Evidence> {
+        let own = |of: &Evidence| -> Vec<Series> {
+            let own = of.series.iter().filter(|series| series.run == self.place);
+            own.cloned().collect()
+        };
+        let periods = own(evidence).into_iter().map(|series| 2.0 * series.half_a_period());
+        let shortest = SHORTEST * periods.fold(0.0, f64::max);
+        let is_long_enough = |of: &Evidence| {
+            let span = |series: &Series| series.at[series.at.len() - 1] - series.at[0];
+            let suffices = |series: &Series| series.at.len() > self.unknown.len() && span(series) >= shortest;
+            own(of).iter().all(suffices)
+        };
+        let half = |of: &Evidence| Some(of.thinned(2)).filter(is_long_enough);
+        std::iter::successors(half(evidence), half).collect()
+    }
+
+    /// Gauss-Newton steps from these initial states.
+    fn estimate(
+        &self,
+        from: Vec<Initial>,
+        evidence: &Evidence,
+        conditions: &mut TestConditions,
+    ) -> Result<Estimate, PredictError> {
+        let mut best = Estimate {
+            states: from.clone(),
+            cost: f64::INFINITY,
+            is_poor: true,
+        };
+        let mut step = DVector::zeros(self.unknown.len());
+        conditions.initial_states[self.place] = from;
         for _ in 0..STEPS {
-            let predictions = predict_by_initial_states(model, values, conditions, evidence, place)?;
-            let rows = Rows::of(&predictions, (nuisance, coefficients), evidence, &unknown);
-            let (cost, next) = rows.solve(&conditions.initial_states[place], &unknown);
-            let gained = best.0 - cost;
+            let predictions = predict_by_initial_states(self.model, self.values, conditions, evidence, self.place)?;
+            let rows = Rows::of(&predictions, self.sensors, evidence, &self.unknown);
+            let states = &mut conditions.initial_states[self.place];
+            let (cost, next) = rows.solve(states, &self.unknown);
+            let gained = best.cost - cost;
             match next.filter(|_| gained > 0.0) {
                 Some(next) => {
-                    best = (cost, conditions.initial_states[place].clone());
+                    best = Estimate {
+                        states: states.clone(),
+                        cost,
+                        is_poor: rms_or_nan(rows.residual.iter().copied()) > LARGE,
+                    };
                     step = next;
                 }
                 // The step was too long for a nonlinear law.
@@ -62,14 +150,11 @@ pub fn estimate_initial_states(
             if gained > 0.0 && gained < CONVERGED * cost {
                 break;
             }
-            let states = conditions.initial_states[place].iter_mut().zip(&best.1);
-            states
-                .zip(step.iter())
-                .for_each(|((own, best), step)| own.by = best.by + step);
+            let moved = states.iter_mut().zip(&best.states).zip(step.iter());
+            moved.for_each(|((own, best), step)| own.by = best.by + step);
         }
-        conditions.initial_states[place] = best.1;
+        Ok(best)
     }
-    Ok(())
 }
 
 /// An unknown initial state of a record.

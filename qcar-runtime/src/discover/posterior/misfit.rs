@@ -6,7 +6,7 @@ use super::initial_states::estimate_initial_states;
 use super::refit::Refit;
 use super::residual::scaled;
 use crate::campaign::Role;
-use crate::discover::observe::{Evidence, Kind, PredictError, Series, predict_sides, unsteady};
+use crate::discover::observe::{Evidence, Kind, PredictError, Run, Series, predict_sides, unsteady};
 use crate::mean::rms_or_nan;
 use crate::model::Model;
 use crate::transmissibility::Point;
@@ -58,7 +58,8 @@ impl Misfit {
         let mut residuals = vec![Vec::new(); evidence.series.len()];
         let sensors = (&refit.nuisance, refit.coefficients.as_slice());
         let mut conditions = refit.nuisance.conditions(evidence, &refit.coefficients);
-        estimate_initial_states(model, &refit.values, sensors, evidence, Role::HeldOut, &mut conditions)?;
+        let is_held_out = |run: &Run| run.role == Role::HeldOut;
+        estimate_initial_states(model, &refit.values, sensors, evidence, is_held_out, &mut conditions)?;
         for role in [Role::Fit, Role::HeldOut] {
             let unsteady = unsteady(model, &refit.values, &conditions, evidence, role)?;
             let sides = [&refit.values, &refit.side];

@@ -33,20 +33,20 @@ impl<'a> AccuracyCheck<'a> {
         }
     }
 
-    /// Checks the sets that were added since the last check. `None` if a more accurate integration could make one of them
+    /// Checks the sets that were added since the last check. False if a more accurate integration could make one of them
     /// the most probable set, or a less probable one of it.
-    pub fn suffices(&mut self, sets: &[Set]) -> Option<()> {
+    pub fn suffices(&mut self, sets: &[Set]) -> bool {
         let unchecked = &sets[self.checked.min(sets.len())..];
         self.checked = sets.len();
         if !self.evidence.could_be_more_accurate() {
-            return Some(());
+            return true;
         }
         let most_probable = sets[best(sets)].log_posterior();
         let decides = |set: &Set| {
             let error = self.error(set).unwrap_or(0.0);
             error > self.limit && set.log_posterior() + error > most_probable
         };
-        (!unchecked.par_iter().any(decides)).then_some(())
+        !unchecked.par_iter().any(decides)
     }
 
     /// The set fitted with a more accurate integration from its optimum, if that is more probable: where steps cannot follow
@@ -59,10 +59,9 @@ impl<'a> AccuracyCheck<'a> {
         (mended.log_posterior() > set.log_posterior()).then_some(mended)
     }
 
-    /// `None` if the set has become so much more probable that other sets could overtake it in the same way.
-    pub fn is_settled(&self, mended: &Set, before: &Set) -> Option<()> {
-        let gain = mended.log_posterior() - before.log_posterior();
-        (gain <= self.limit / 2.0).then_some(())
+    /// False if the set has become so much more probable that other sets could overtake it in the same way.
+    pub fn is_settled(&self, mended: &Set, before: &Set) -> bool {
+        mended.log_posterior() - before.log_posterior() <= self.limit / 2.0
     }
 
     /// Sum of squares of the error of the predictions of a set, in units of the noise and the discrepancy, that changes
