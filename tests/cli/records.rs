@@ -364,6 +364,50 @@ const FREE: &str = "axle free {
 }
 ";
 
+/// No sensor shows where the mass begins, and a model that begins at rest never reaches the stop.
+#[test]
+fn accelerometers_show_a_stop_in_free_decays() {
+    let folder = tempfile::tempdir().unwrap();
+    let parameters = parameter("c_body", 2.0, "N s/m", "") + &parameter("k_body", 700.0, "N/m", "");
+    let runs = [[0.02, 0.3], [-0.025, 0.1], [0.03, -0.5]].map(|begin| vec![("z", with_stop(begin))]);
+    let runs: Vec<Columns> = runs.iter().map(Vec::as_slice).collect();
+    campaign(folder.path(), "free.axle", &parameters, "band_limited = false", &runs);
+    let manifest = folder.path().join("campaign.toml");
+    let text = fs::read_to_string(&manifest).unwrap();
+    let measured = text.replace("\"displacement\"\nunit = \"m\"", "\"acceleration\"\nunit = \"m/s²\"");
+    fs::write(&manifest, measured).unwrap();
+    let model = FREE.replace("body.position", "body.acceleration");
+    fs::write(folder.path().join("free.axle"), model).unwrap();
+    let (found, answer) = discovered_into(&folder.path().join("out"), folder.path().to_str().unwrap());
+    assert_eq!(answer["verdict"], "found", "{found}");
+    let [stop] = &answer["findings"].as_array().unwrap()[..] else {
+        panic!("{found}");
+    };
+    assert_eq!(stop["effect"], "bump_stop", "{found}");
+    for (name, truth) in [("gap", 0.005), ("k_stop", 3000.0)] {
+        let value = stop["parameters"][name]["value"].as_f64().unwrap();
+        assert!((value / truth - 1.0).abs() < 0.01, "{name} = {value}\n{found}");
+    }
+}
+
+/// Accelerations of a mass on a spring and a light damper, with a stop at 5 mm of compression.
+fn with_stop(begin: [f64; 2]) -> Vec<f64> {
+    const FINER: usize = 200;
+    let h = 1.0 / (RATE * FINER as f64);
+    let acceleration = |z: f64, v: f64| (-800.0 * z - v - 3000.0 * (z + 0.005).min(0.0)) / 2.0;
+    let [mut z, mut v] = begin;
+    let mut samples = Vec::new();
+    for step in 0..800 * FINER {
+        if step % FINER == 0 {
+            samples.push(acceleration(z, v));
+        }
+        let [z_middle, v_middle] = [z + 0.5 * h * v, v + 0.5 * h * acceleration(z, v)];
+        z += h * v_middle;
+        v += h * acceleration(z_middle, v_middle);
+    }
+    samples
+}
+
 /// No sensor shows how fast it is at first.
 #[test]
 fn a_record_that_starts_in_motion_needs_no_input() {
