@@ -10,7 +10,8 @@ use crate::discover::posterior::Explanation;
 /// The set itself, or the part of it that remains after unsupported effects are removed. A smaller set replaces the set
 /// if it predicts the held-out runs at least as well, if it has effects and the additional ones explain too little of
 /// its excess residual, if one of these has a parameter at its bound, or if only the cleat runs along one axis prefer
-/// the set. The last two checks need no held-out runs. A set with a magnitude at its bound replaces no other.
+/// the set. It also does if it explains nearly all of the residual and the fitted runs determine no parameter of an
+/// additional effect. The last three checks need no held-out runs. A set with a magnitude at its bound replaces no other.
 ///
 /// Fewer effects that are no part of the set replace it if they explain nearly all of the residual and predict the
 /// held-out runs at least as well: several effects can imitate a law whose form is a little different.
@@ -26,7 +27,11 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
             let explains_little = || is_enough() || explained_share(part, set, evidence) < evidence.numbers.explained();
             let changes_little = !part.names().is_empty() && explains_little();
             let fails = is_judged && (changes_little || !predicts_better(part));
-            fails || set.adds_effect_at_bound(part, evidence) || rests_on_passages(set, part, evidence)
+            let explains = || excess(&part.explanation, evidence) <= unexplained;
+            fails
+                || set.adds_effect_at_bound(part, evidence)
+                || set.adds_undetermined_effect(part) && explains()
+                || rests_on_passages(set, part, evidence)
         };
         let is_simpler = |other: &Set| {
             let explains = is_judged && excess(&other.explanation, evidence) <= unexplained;
@@ -47,8 +52,9 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
 }
 
 /// True if a set predicts the held-out runs better than another set with the same sensor errors. If these runs do not
-/// judge, it is true unless the prediction is certainly worse, or if no run is held out. With sensor errors of its own, a set that lacks an effect could attribute its residual to inaccurate sensors,
-/// and its prediction would then seem as good.
+/// judge, it is true unless the prediction is certainly worse, or if no run is held out. With sensor errors of its own, a
+/// set that lacks an effect could attribute its residual to inaccurate sensors, and its prediction would then seem as
+/// good.
 ///
 /// A set that explains nearly all of the residual counts as better whatever its score. The score assumes that the
 /// discrepancy of the held-out runs is that of the fitted ones. If the motion is sensitive to its initial state, small

@@ -226,6 +226,14 @@ impl Set {
         self.named().filter(is_new).any(is_at_bound)
     }
 
+    /// True if the fitted runs determine no parameter of an effect that `part` lacks, and `part` has effects: the effect
+    /// then stands for a small part of the residual that many others would explain as well.
+    pub fn adds_undetermined_effect(&self, part: &Set) -> bool {
+        let is_new = |own: &&Placed| !part.names().contains(&own.name());
+        let is_undetermined = |own: &Placed| own.unknowns.are_undetermined(&self.explanation);
+        !part.names().is_empty() && self.named().filter(is_new).any(is_undetermined)
+    }
+
     /// True if a parameter of the model is at its bound here and inside its range in the fit of `part`.
     fn sends_parameter_to_bound(&self, part: &Set) -> bool {
         let at_bound = |set: &'_ Set, bounded: bool| -> Vec<String> {

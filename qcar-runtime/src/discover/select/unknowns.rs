@@ -91,6 +91,14 @@ impl Unknowns {
         })
     }
 
+    /// True if the fitted runs determine none of its parameters: every standard error exceeds the value.
+    pub fn are_undetermined(&self, explanation: &Explanation) -> bool {
+        let parameters = self.parameters(explanation);
+        let mut free = parameters.iter().filter(|(_, _, error)| *error != 0.0);
+        // An error that is not a number is one of an undetermined parameter.
+        free.clone().next().is_some() && free.all(|(_, value, error)| !(*error <= value.abs()))
+    }
+
     /// Estimates of the effect: name, value and standard error, SI. The error is 0 for a fixed parameter.
     pub fn parameters(&self, explanation: &Explanation) -> Vec<(String, f64, f64)> {
         let refit = &explanation.refit;
