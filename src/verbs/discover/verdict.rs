@@ -2,6 +2,7 @@
 
 use std::cmp::Ordering;
 
+use qcar_runtime::campaign::Role;
 use qcar_runtime::discover::answer::{Finding, Verdict};
 use qcar_runtime::discover::numbers::{DOUBTFUL_BELOW, LARGE};
 use qcar_runtime::discover::posterior::SensorShare;
@@ -67,15 +68,24 @@ fn unexplained(of: &Answer) -> String {
 }
 
 /// The verdict `None` as a sentence. It depends on the held-out runs: if the fitted runs show no effect, the model may
-/// still predict others badly.
+/// still predict others badly. Residuals far above noise may be a small part of the signal, as of any model.
 fn nothing_found(of: &Answer) -> String {
     let gap = &of.discovery.before.misfit;
-    let (runs, left) = match gap.held_out.is_finite() {
-        true => ("held-out", gap.held_out),
-        false => ("fitted", gap.fit),
+    let (runs, role, left) = match gap.held_out.is_finite() {
+        true => ("held-out", Role::HeldOut, gap.held_out),
+        false => ("fitted", Role::Fit, gap.fit),
     };
     if left > LARGE {
         let left = number(left, 3);
+        let shares = gap.sensor_shares(&of.evidence, role);
+        let most = shares.iter().map(SensorShare::missed).fold(0.0, f64::max);
+        if most <= of.evidence.numbers.expected_discrepancy {
+            let percent = number(100.0 * most, 2);
+            return format!(
+                "no effect found: the residuals of the {runs} runs are {left} times noise, and at most {percent} % of \
+                 any signal"
+            );
+        }
         format!("no effect found, but the {runs} runs have residuals of {left} standard deviations")
     } else if is_doubtful(of) {
         "no effect is certain: small residuals above noise remain".into()
