@@ -54,6 +54,17 @@ fn what_is_left_of_a_clean_campaign_is_noise() {
     assert_eq!(answer["places"], Value::Array(Vec::new()));
 }
 
+/// A low-pass filter delays a sensor and damps it by a few percent, and the catalogue has only delays. An absorber of the
+/// wheel whose parameters nothing determines would explain the rest, and is not named.
+#[test]
+fn a_low_pass_filter_is_a_delay_and_nothing_else() {
+    let campaign = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/low_pass");
+    let answer = discover(&campaign, None);
+    let effects = answer["effects"].as_array().expect("a list");
+    assert_eq!(effects.len(), 2, "{answer}");
+    assert!(effects.iter().all(|own| own["name"] == "sensor_delay"), "{answer}");
+}
+
 /// Half of the size from which on an effect is said to be seen is not named, and twice that size is.
 #[test]
 fn an_effect_is_seen_from_the_size_on_that_is_told() {

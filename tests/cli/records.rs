@@ -380,12 +380,12 @@ fn accelerometers_show_a_stop_in_free_decays() {
     fs::write(folder.path().join("free.axle"), model).unwrap();
     let (found, answer) = discovered_into(&folder.path().join("out"), folder.path().to_str().unwrap());
     assert_eq!(answer["verdict"], "found", "{found}");
-    let [stop] = &answer["findings"].as_array().unwrap()[..] else {
+    let [stop] = &answer["effects"].as_array().unwrap()[..] else {
         panic!("{found}");
     };
-    assert_eq!(stop["effect"], "bump_stop", "{found}");
+    assert_eq!(stop["name"], "bump_stop", "{found}");
     for (name, truth) in [("gap", 0.005), ("k_stop", 3000.0)] {
-        let value = stop["parameters"][name]["value"].as_f64().unwrap();
+        let value = stop["parameters"][name].as_f64().unwrap();
         assert!((value / truth - 1.0).abs() < 0.01, "{name} = {value}\n{found}");
     }
 }
