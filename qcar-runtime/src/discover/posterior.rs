@@ -27,6 +27,8 @@ mod search;
 mod linearised;
 // Offsets that are confounded with a parameter.
 mod offset;
+// Initial states of records, estimated with all parameters fixed.
+mod initial_states;
 // A complete fit in one call.
 mod fit;
 // Profile intervals of parameters.
@@ -35,8 +37,6 @@ mod profile;
 mod design;
 // Non-steady part of sweep responses.
 mod unsteady;
-// Initial states of held-out records.
-mod initial_states;
 // Residuals over all runs, and where they are large.
 mod misfit;
 // The residual of each sensor as a share of its signal.
