@@ -151,7 +151,7 @@ pub fn reserved_name(span: Span, name: &str, owner: &str) -> Diagnostic {
         format!("`{name}` cannot be used as a name: it is {owner}"),
     )
     .label(span, "taken")
-    .hint(format!("write a name that says more, such as `{name}_tire`"))
+    .hint(format!("write another name, such as `{name}_1`"))
 }
 
 /// A name that is not in lower case.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use qcar_runtime::discover::answer::Finding;
+use qcar_runtime::discover::answer::{Finding, Rival};
 
 use crate::table::{Table, number, or_dash};
 use crate::units;
@@ -33,7 +33,7 @@ pub(super) fn share(explained: Option<f64>) -> String {
     }
 }
 
-/// Place, share of the residual, parameters and rivals. `among` is the number of findings of the same answer, which
+/// Place, share of the residual and parameters. `among` is the number of findings of the same answer, which
 /// explain that share together.
 pub(super) fn described(finding: &Finding, among: usize, of: &BTreeMap<String, String>) -> String {
     let others = match among {
@@ -53,16 +53,21 @@ pub(super) fn described(finding: &Finding, among: usize, of: &BTreeMap<String, S
         table(finding, of)
     );
     out += &undetermined(finding);
-    for rival in finding.rivals.iter().take(4) {
-        let _ = writeln!(
-            out,
-            "less likely instead: {} at {}, lower by {} in log evidence",
-            rival.effect,
-            rival.at,
-            number(rival.behind, 3)
-        );
-    }
     out
+}
+
+/// The effects that were dropped in favour of a finding, a line each, best first.
+pub(super) fn rivals(finding: &Finding) -> String {
+    let mut best_first: Vec<&Rival> = finding.rivals.iter().collect();
+    best_first.sort_by(|a, b| a.behind.total_cmp(&b.behind));
+    let line = |rival: &&Rival| {
+        let behind = number(rival.behind, 3);
+        format!(
+            "less likely instead: {} at {}, lower by {behind} in log evidence\n",
+            rival.effect, rival.at
+        )
+    };
+    best_first.iter().take(4).map(line).collect()
 }
 
 /// Which parameters the fitted runs do not determine, or hardly.

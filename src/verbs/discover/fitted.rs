@@ -73,14 +73,19 @@ pub(super) fn parameters(heading: &str, of: &Explanation) -> String {
     out
 }
 
-/// The zero offsets as a table.
-pub(super) fn offsets_table(of: &Explanation) -> String {
+/// The zero offsets that exceed two standard errors as a table; `None` without any.
+pub(super) fn offsets_table(of: &Explanation) -> Option<String> {
     let mut table = Table::new(["channel", "quantity", "unit", "offset", "stderr"]);
-    for own in offsets(of) {
+    let is_certain = |own: &Offset| own.stderr.is_none_or(|error| own.offset.abs() > 2.0 * error);
+    let certain: Vec<Offset> = offsets(of).into_iter().filter(is_certain).collect();
+    if certain.is_empty() {
+        return None;
+    }
+    for own in certain {
         let shown = |value| units::value(value, own.unit);
         let numbers = [number(shown(own.offset), 4), or_dash(own.stderr.map(shown), 2)];
         let names = [own.channel, own.quantity.into(), units::name(own.unit).into()];
         table.row(names.into_iter().chain(numbers).collect());
     }
-    table.text()
+    Some(table.text())
 }

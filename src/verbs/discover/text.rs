@@ -7,7 +7,7 @@ use qcar_runtime::discover::observe::Kind;
 use qcar_runtime::discover::posterior::Explanation;
 
 use super::Answer;
-use super::finding::described;
+use super::finding::{described, rivals};
 use super::fitted::{at_bound, offsets_table};
 use super::learned;
 use super::nuisances;
@@ -40,16 +40,16 @@ pub(super) fn text(of: &Answer) -> String {
     for (place, (finding, units)) in of.discovery.findings.iter().zip(&of.units).enumerate() {
         let among = if place < certain { certain } else { certain + 1 };
         out += &format!("\n{}{}", choice(of, place), described(finding, among, units));
+        // Effects of one set have the same rivals.
+        let next = of.discovery.findings.get(place + 1);
+        if next.is_none_or(|next| next.rivals != finding.rivals) {
+            out += &rivals(finding);
+        }
     }
     out += &nuisances::text(of);
-    for (name, end) in at_bound(&of.discovery.after) {
-        let _ = writeln!(out, "\n{name} is at the {end} end of its range");
-    }
-    if !of.discovery.after.refit.offsets().is_empty() {
-        out += &format!(
-            "\nzero offsets of the sensors of records\n{}",
-            offsets_table(&of.discovery.after)
-        );
+    out += &bounds(of);
+    if let Some(offsets) = offsets_table(&of.discovery.after) {
+        out += &format!("\nzero offsets of the sensors of records\n{offsets}");
     }
     if of.discovery.verdict != Verdict::None {
         out += &format!("\nlargest residuals of the campaign's model\n{}", tiles(of));
@@ -76,6 +76,25 @@ fn last(of: &Answer) -> (&'static str, &Explanation) {
         Some(law) => ("with_law", &law.explanation),
         None => ("after", &of.discovery.after),
     }
+}
+
+/// The parameters at an end of their range, also those of the base model: an effect may only make up for a range that
+/// excludes the true value.
+fn bounds(of: &Answer) -> String {
+    let after: Vec<(String, &str)> = at_bound(&of.discovery.after).collect();
+    let mut out = String::new();
+    for (name, end) in &after {
+        let _ = writeln!(out, "\n{name} is at the {end} end of its range");
+    }
+    let is_gone = |own: &(String, &str)| !of.discovery.findings.is_empty() && !after.contains(own);
+    for (name, end) in at_bound(&of.discovery.before).filter(is_gone) {
+        let _ = writeln!(
+            out,
+            "\nwithout effects {name} is at the {end} end of its range: if that excludes the true value, an effect may \
+             only make up for it"
+        );
+    }
+    out
 }
 
 /// The most probable effects as a table; empty without any. An effect of an answer with several may explain little

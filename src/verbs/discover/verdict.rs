@@ -3,8 +3,8 @@
 use std::cmp::Ordering;
 
 use qcar_runtime::campaign::Role;
-use qcar_runtime::discover::answer::{Finding, Verdict};
-use qcar_runtime::discover::numbers::{DOUBTFUL_BELOW, LARGE};
+use qcar_runtime::discover::answer::{Finding, Probable, Verdict};
+use qcar_runtime::discover::numbers::{DOUBTFUL_BELOW, GREATER_PART, LARGE};
 use qcar_runtime::discover::posterior::SensorShare;
 
 use super::Answer;
@@ -56,6 +56,13 @@ fn largest_residual(of: &Answer) -> Option<SensorShare<'_>> {
 /// may be of another state of the axle than the fitted ones. If neither shows large residuals, nothing certain is missing.
 fn unexplained(of: &Answer) -> String {
     let gap = &of.discovery.before.misfit;
+    if let Some(own) = nearly_certain(of) {
+        let [probability, needed] = [own.probability, of.evidence.numbers.certain()].map(|value| number(value, 3));
+        return format!(
+            "something is missing, most probably {} at {}: a probability of {probability}, where a name needs {needed}",
+            own.effect, own.at
+        );
+    }
     let missing = "something is missing that no effect of the catalogue explains";
     if gap.fit <= LARGE && gap.held_out > LARGE && of.discovery.learned.is_none() {
         let left = number(gap.held_out, 3);
@@ -65,6 +72,15 @@ fn unexplained(of: &Answer) -> String {
     } else {
         missing.into()
     }
+}
+
+/// The most probable effect, if no law was learned, and if it explains most of the residual and falls short of the
+/// required probability only.
+fn nearly_certain(of: &Answer) -> Option<&Probable> {
+    let first = of.discovery.candidates.first()?;
+    let is_probable = (DOUBTFUL_BELOW..of.evidence.numbers.certain()).contains(&first.probability);
+    let explains = first.explained.is_some_and(|share| share >= GREATER_PART);
+    Some(first).filter(|_| of.discovery.learned.is_none() && is_probable && explains)
 }
 
 /// The verdict `None` as a sentence. It depends on the held-out runs: if the fitted runs show no effect, the model may
