@@ -393,7 +393,7 @@ const MISTAKES: &[(&str, (&str, &str, &str))] = &[
     ),
     (
         "a sample rate that is a little off",
-        ("campaign.toml", "sample_rate = 610.35", "sample_rate = 650.0"),
+        ("campaign.toml", "sample_rate = 610.35", "sample_rate = 720.0"),
     ),
     (
         "half the sample rate",

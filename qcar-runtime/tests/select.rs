@@ -301,10 +301,10 @@ fn a_law_takes_the_place_of_a_class_only_where_it_explains_more_than_its_members
     assert!(class.learned.is_none());
 }
 
-/// A mount that is too stiff explains the mass in part. The noise of the held-out runs hides the mass, so the fitted runs
-/// judge, and the law explains more of them.
+/// A mount that is too stiff explains most of the mass. The noise of the held-out runs hides what is missing, so the
+/// fitted runs judge: they confirm the name, and a law that fits a little better does not replace it.
 #[test]
-fn a_law_takes_the_place_of_a_name_that_leaves_more_of_the_fitted_runs() {
+fn the_fitted_runs_confirm_a_name_where_held_out_runs_show_nothing() {
     let mut evidence = evidence(0.0, &LEVELS);
     for series in evidence.series.iter_mut().filter(|series| series.run == 2) {
         let larger = |noise: &mut f64| *noise *= 60.0;
@@ -314,20 +314,14 @@ fn a_law_takes_the_place_of_a_name_that_leaves_more_of_the_fitted_runs() {
         stiffness: (STIFF, STIFF),
         ..Hanging::new("stiff", (20.0, 200.0))
     };
-    let law = Hanging::new("law", (20.0, 200.0));
-    let bench = |laws: Vec<Hanging>| Bench {
+    let bench = Bench {
         model: Strut::new(PLAIN),
-        masses: vec![stiff.clone()],
-        laws,
+        masses: vec![stiff],
+        laws: vec![Hanging::new("law", (20.0, 200.0))],
         delays: false,
     };
-    let named = answer_of(bench(Vec::new()), &evidence);
-    assert_eq!(named.verdict, Verdict::Found);
-    assert_eq!(named.findings[0].effect, "stiff");
-    let unknown = answer_of(bench(vec![law]), &evidence);
-    assert_eq!(unknown.verdict, Verdict::Unknown);
-    let learned = unknown.learned.expect("it explains more");
-    assert_eq!(learned.laws[0].effect, "law");
-    let by_name = named.findings[0].explained;
-    assert!(by_name.is_some() && by_name < learned.explained, "{by_name:?} by name");
+    let found = answer_of(bench, &evidence);
+    assert_eq!(found.verdict, Verdict::Found);
+    assert_eq!(found.findings[0].effect, "stiff");
+    assert!(found.findings[0].explained > Some(0.95), "{:?}", found.findings[0]);
 }
