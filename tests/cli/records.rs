@@ -364,6 +364,21 @@ const FREE: &str = "axle free {
 }
 ";
 
+/// The truth is 3 N s/m. An effect that damps less would make up for the range.
+#[test]
+fn a_range_that_excludes_the_truth_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let parameters = parameter("m_body", 2.0, "kg", "").replace("true", "false")
+        + &parameter("c_body", 6.0, "N s/m", "range = [4.0, 20.0]\n")
+        + &parameter("k_body", 700.0, "N/m", "range = [100.0, 2000.0]\n");
+    pushed_campaign(folder.path(), "one_mass", &parameters);
+    let answer = discovered(folder.path().to_str().unwrap());
+    assert_eq!(answer["verdict"], "none", "{answer}");
+    let told =
+        "c_body = 3 N s/m explains the data better than any value in its range in the campaign, 4 N s/m to 20 N s/m";
+    assert!(answer["notices"].to_string().contains(told), "{answer}");
+}
+
 /// No sensor shows where the mass begins, and a model that begins at rest never reaches the stop.
 #[test]
 fn accelerometers_show_a_stop_in_free_decays() {

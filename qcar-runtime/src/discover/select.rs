@@ -34,6 +34,8 @@ mod window_check;
 mod reduce;
 // Replacement of effects by their rivals.
 mod exchange;
+// Sets with parameters beyond the ranges of the campaign.
+mod ranges;
 // Learned laws for effects that the catalogue lacks.
 mod learn;
 // The first learned law, before pairs and triples of effects are tried.
@@ -55,6 +57,7 @@ use first_law::FirstLaw;
 use held_out::supported_part;
 use integration::AccuracyCheck;
 use probability::probabilities;
+use ranges::with_ranges_of_model;
 use reduce::reductions;
 use set::{
     Set, best_base, excess, explained_share, held_out_judge, is_missing, keep_best, leaves_more_than_noise,
@@ -125,7 +128,7 @@ pub fn discover(
         again.is_some_and(|log_evidence| is_more_probable(log_evidence, found, evidence))
     });
     let Some(quieter) = quieter else {
-        evidence.notices.extend(found.note_on_sensors());
+        evidence.notices.extend(found.notes());
         return Ok(searched.discovery);
     };
     *evidence = quieter.seen_by(found.assembly.model(), &found.explanation.refit.values)?;
@@ -135,7 +138,7 @@ pub fn discover(
     let mut base = fitted(evidence)?;
     base.extended = searched.sets[0].extended;
     let searched = search(fitted_to(evidence, base, &searched.sets), evidence)?;
-    evidence.notices.extend(searched.found().note_on_sensors());
+    evidence.notices.extend(searched.found().notes());
     Ok(searched.discovery)
 }
 
@@ -209,6 +212,9 @@ fn attempt(mut sets: Vec<Set>, evidence: &Evidence, progress: Progress<'_>) -> R
         progress(Update::Step("trying the rivals of each effect"));
         let others = exchanges(&sets[place], &sets, evidence);
         sets.extend(others);
+    }
+    for own in with_ranges_of_model(&sets, best(&sets), evidence) {
+        keep_best(own, &mut sets);
     }
     refit_best(&mut sets, evidence);
     if !accuracy.suffices(&sets) {

@@ -21,6 +21,8 @@ pub struct Assembly {
     setting: Setting,
     nuisance: Nuisance,
     effects: Vec<Placed>,
+    /// Parameters with the range of the model file instead of that of the campaign, with the latter.
+    widened: Vec<(String, (f64, f64))>,
 }
 
 /// An effect at its place, in one of its forms.
@@ -124,6 +126,7 @@ impl Assembly {
             setting: setting.clone(),
             nuisance: Nuisance::of(evidence),
             effects: Vec::new(),
+            widened: Vec::new(),
         })
     }
 
@@ -135,6 +138,33 @@ impl Assembly {
     /// Parameters of the model, with those of its effects.
     pub fn given(&self) -> &[Given] {
         &self.setting.given
+    }
+
+    /// Parameters with the range of the model file instead of that of the campaign, with the latter, SI.
+    pub fn widened(&self) -> &[(String, (f64, f64))] {
+        &self.widened
+    }
+
+    /// The range of the model file for a parameter that the campaign fits within a narrower one; `None` for any other.
+    pub fn range_of_model(&self, parameter: &str) -> Option<(f64, f64)> {
+        let own = self.setting.given.iter().find(|own| own.name == parameter)?.range?;
+        let of_model = self.model().about().parameters.iter();
+        let of_model = of_model.filter(|own| own.name == parameter).find_map(|own| own.range)?;
+        (of_model.0 < own.0 || of_model.1 > own.1).then_some((of_model.0.min(own.0), of_model.1.max(own.1)))
+    }
+
+    /// The assembly with the range of the model file for these parameters.
+    pub fn with_ranges_of_model(&self, parameters: &[String]) -> Self {
+        let mut wider = self.clone();
+        for given in &mut wider.setting.given {
+            let is_wanted = parameters.contains(&given.name);
+            let of_model = self.range_of_model(&given.name).filter(|_| is_wanted);
+            if let (Some(of_model), Some(own)) = (of_model, given.range) {
+                wider.widened.push((given.name.clone(), own));
+                given.range = Some(of_model);
+            }
+        }
+        wider
     }
 
     /// The model with all effects.

@@ -14,6 +14,7 @@ use crate::discover::noise::AccuracyClass;
 use crate::discover::numbers::{Numbers, ONE_SIDED};
 use crate::discover::observe::Evidence;
 use crate::discover::posterior::{Explanation, Refit};
+use crate::shown::shown;
 
 /// Rounds and evaluations of a fit to other evidence from a known optimum. A choice, ample so near an optimum.
 const AGAIN: (usize, usize) = (2, 20);
@@ -111,6 +112,72 @@ impl Set {
         })
     }
 
+    /// Parameters at an end of the campaign's range beyond which that of the model file reaches.
+    pub fn beyond_range(&self) -> Vec<String> {
+        let refit = &self.explanation.refit;
+        let at_end = refit.free.iter().zip(&refit.at_bound).filter(|(_, side)| **side != 0);
+        let beyond = at_end.filter_map(|(free, side)| {
+            let name = &self.explanation.named[free.parameter].0;
+            let (lower, upper) = self.assembly.range_of_model(name)?;
+            let reaches = if *side < 0 {
+                lower < free.lower
+            } else {
+                upper > free.upper
+            };
+            reaches.then(|| name.clone())
+        });
+        beyond.collect()
+    }
+
+    /// The set with the range of the model file for the parameters at an end of that of the campaign; `None` if its fit
+    /// fails, or ends within the ranges of the campaign.
+    pub fn with_ranges_of_model(&self, evidence: &Evidence) -> Option<Self> {
+        let assembly = self.assembly.with_ranges_of_model(&self.beyond_range());
+        let steady = self.steady(evidence);
+        let hypothesis = assembly.hypothesis();
+        let refit = hypothesis
+            .fit(&hypothesis.place(&self.explanation.refit), &steady, FINE_BUDGET)
+            .ok()?;
+        let refit = continued(&hypothesis, refit, &steady, |_| true)?;
+        let explanation = finite_explanation(&hypothesis, refit, evidence)?;
+        let value = |name: &str| {
+            explanation
+                .named
+                .iter()
+                .find(|(own, _)| own == name)
+                .map(|(_, value)| *value)
+        };
+        let mut widened = assembly.widened().iter();
+        let is_outside =
+            widened.any(|(name, range)| value(name).is_some_and(|value| value < range.0 || value > range.1));
+        is_outside.then(|| Self {
+            rivals: self.rivals.clone(),
+            ..Self::new(
+                assembly.clone(),
+                explanation,
+                self.log_prior + evidence.numbers.further.ln(),
+            )
+        })
+    }
+
+    /// A notice for each parameter outside the range that the campaign gives it.
+    fn notes_on_ranges(&self) -> Vec<String> {
+        let about = self.assembly.model().about();
+        let note = |(name, range): &(String, (f64, f64))| {
+            let (_, value) = self.explanation.named.iter().find(|(own, _)| own == name)?;
+            let unit = about.parameters.iter().find(|own| own.name == *name)?.unit.clone();
+            let [value, lower, upper] = [*value, range.0, range.1].map(|value| {
+                let short = format!("{value:.3e}").parse().unwrap_or(value);
+                shown(short, &unit).to_string()
+            });
+            Some(format!(
+                "{name} = {value} explains the data better than any value in its range in the campaign, {lower} to \
+                 {upper}: check that range"
+            ))
+        };
+        self.assembly.widened().iter().filter_map(note).collect()
+    }
+
     fn with_fit(&self, refit: Refit, evidence: &Evidence) -> Option<Self> {
         let explanation = finite_explanation(&self.assembly.hypothesis(), refit, evidence)?;
         Some(Self {
@@ -155,8 +222,13 @@ impl Set {
         Fidelity::of(&steady).fine
     }
 
+    /// Notices on its sensors and on its parameters.
+    pub fn notes(&self) -> impl Iterator<Item = String> {
+        self.note_on_sensors().into_iter().chain(self.notes_on_ranges())
+    }
+
     /// A notice if the sensors are less accurate than their data sheets.
-    pub fn note_on_sensors(&self) -> Option<String> {
+    fn note_on_sensors(&self) -> Option<String> {
         let class = self.accuracy();
         let percent = |class: AccuracyClass| format!("{:.1} %", 100.0 * class.gain());
         self.has_inaccurate_sensors().then(|| {
