@@ -1,9 +1,11 @@
-//! Notices about sensors that a search leads to.
+//! Notices about sensors and ranges that a search leads to.
 
+use qcar_runtime::campaign::Campaign;
 use qcar_runtime::discover::Evidence;
 use qcar_runtime::discover::answer::Discovery;
 use qcar_runtime::discover::posterior::ReversedSensor;
 
+use super::fitted::at_bound;
 use crate::sensor_residuals::channel;
 use crate::table::number;
 
@@ -21,6 +23,22 @@ fn offsets_of_the_model(discovery: &Discovery) -> impl Iterator<Item = String> {
     without.iter().map(|(sensor, own)| {
         format!("{sensor}: `{own}` of the model is the offset of this sensor, so no other offset is estimated for it")
     })
+}
+
+/// A sentence for each parameter of the campaign that is at an end of its range only without the effects of the answer:
+/// they may make up for a range that excludes the true value.
+pub(super) fn on_ranges(discovery: &Discovery, campaign: &Campaign) -> Vec<String> {
+    let after: Vec<(String, &str)> = at_bound(&discovery.after).collect();
+    let is_own = |(name, _): &(String, &str)| campaign.parameters.iter().any(|own| own.name == *name);
+    let is_gone = |own: &(String, &str)| !discovery.findings.is_empty() && !after.contains(own);
+    let gone = at_bound(&discovery.before).filter(|own| is_own(own) && is_gone(own));
+    let sentence = |(name, end): (String, &str)| {
+        format!(
+            "without effects {name} is at the {end} end of its range: if that excludes the true value, an effect may only \
+             make up for it"
+        )
+    };
+    gone.map(sentence).collect()
 }
 
 /// A sentence for each sensor whose sign is probably wrong.

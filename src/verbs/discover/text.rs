@@ -47,7 +47,9 @@ pub(super) fn text(of: &Answer) -> String {
         }
     }
     out += &nuisances::text(of);
-    out += &bounds(of);
+    for (name, end) in at_bound(&of.discovery.after) {
+        let _ = writeln!(out, "\n{name} is at the {end} end of its range");
+    }
     if let Some(offsets) = offsets_table(&of.discovery.after) {
         out += &format!("\nzero offsets of the sensors of records\n{offsets}");
     }
@@ -76,25 +78,6 @@ fn last(of: &Answer) -> (&'static str, &Explanation) {
         Some(law) => ("with_law", &law.explanation),
         None => ("after", &of.discovery.after),
     }
-}
-
-/// The parameters at an end of their range, also those of the base model: an effect may only make up for a range that
-/// excludes the true value.
-fn bounds(of: &Answer) -> String {
-    let after: Vec<(String, &str)> = at_bound(&of.discovery.after).collect();
-    let mut out = String::new();
-    for (name, end) in &after {
-        let _ = writeln!(out, "\n{name} is at the {end} end of its range");
-    }
-    let is_gone = |own: &(String, &str)| !of.discovery.findings.is_empty() && !after.contains(own);
-    for (name, end) in at_bound(&of.discovery.before).filter(is_gone) {
-        let _ = writeln!(
-            out,
-            "\nwithout effects {name} is at the {end} end of its range: if that excludes the true value, an effect may \
-             only make up for it"
-        );
-    }
-    out
 }
 
 /// The most probable effects as a table; empty without any. An effect of an answer with several may explain little
