@@ -10,7 +10,7 @@ use clap_complete::engine::ArgValueCompleter;
 use qcar_dsl::check::Checked;
 use qcar_dsl::patch::Patched;
 use qcar_runtime::campaign::{Campaign, Role};
-use qcar_runtime::discover::answer::{Discovery, Finding, Update, Verdict};
+use qcar_runtime::discover::answer::{DetectionLimit, Discovery, Finding, Update, Verdict};
 use qcar_runtime::discover::candidate::Workshop;
 use qcar_runtime::discover::numbers::Numbers;
 use qcar_runtime::discover::posterior::Setting;
@@ -91,6 +91,8 @@ pub struct Answer {
     pub discovery: Discovery,
     /// The base model, with its nuisance effects.
     base: Checked,
+    /// Links and masses that its nuisance effects have added: they are no places of the user's model.
+    added_parts: Vec<String>,
     /// Places at which a change would explain the residuals of the sweeps.
     pub sweeps: Sweeps,
     /// Units of the parameters of each finding.
@@ -112,6 +114,12 @@ impl Answer {
     /// The answer in words.
     pub fn text(&self) -> String {
         text::text(self)
+    }
+
+    /// Detection limits at the places of the user's model.
+    fn detection_limits(&self) -> impl Iterator<Item = &DetectionLimit> {
+        let all = self.discovery.detection_limits.iter();
+        all.filter(|own| !self.added_parts.contains(&own.at))
     }
 
     /// Residuals of each sensor over frequency, before and after, as SVG.
@@ -279,6 +287,7 @@ pub(crate) fn answer(
     let [before, after] = [0, 1].map(|of| with_nuisances(bench.clone(), &discovery.nuisances[of]));
     let sweeps = Sweeps::new(before.model(), &discovery.before.refit, &evidence).unwrap_or_default();
     Ok(Answer {
+        added_parts: added_parts(bench.checked(), before.checked()),
         base: before.checked().clone(),
         sweeps,
         units: units(after.clone(), &discovery),
@@ -302,6 +311,16 @@ fn setting(campaign: &Campaign, about: &About) -> Result<Setting, InputError> {
     parameters.extend(own(about, campaign));
     bound(&mut parameters, about, campaign)?;
     Ok(given(&parameters, campaign))
+}
+
+/// Names of the links and coordinates of a model that another one lacks.
+fn added_parts(lacking: &Checked, model: &Checked) -> Vec<String> {
+    let parts = |of: &Checked| -> Vec<String> {
+        let links = of.links.iter().map(|own| own.name.clone());
+        links.chain(of.coordinates.iter().map(|own| own.name.clone())).collect()
+    };
+    let known = parts(lacking);
+    parts(model).into_iter().filter(|own| !known.contains(own)).collect()
 }
 
 /// The bench with nuisance effects added to its model. They apply, since they have been fitted.

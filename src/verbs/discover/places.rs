@@ -81,12 +81,13 @@ pub(crate) fn places(of: &Answer) -> Vec<PlaceStiffness> {
     sites(of).into_iter().take(LISTED).map(missing).collect()
 }
 
-/// Every place with its best κ, best first.
+/// Every place of the user's model with its best κ, best first.
 pub(crate) fn sites(of: &Answer) -> Vec<(Site, &MissingStiffness)> {
     let mut found: Vec<(Site, &MissingStiffness)> = Vec::new();
     for kappa in &of.sweeps.places {
         let site = site(&of.base, &kappa.place);
-        if found.iter().all(|(other, _)| *other != site) {
+        let is_own = !of.added_parts.contains(&site.at);
+        if is_own && found.iter().all(|(other, _)| *other != site) {
             found.push((site, kappa));
         }
     }

@@ -130,7 +130,7 @@ pub(crate) fn result(of: &Answer) -> Result<'_> {
         nuisances: nuisances::json(of),
         r#where: before.tiles.iter().take(LISTED).map(place).collect(),
         places: missing(of),
-        visible: of.discovery.detection_limits.iter().map(limit).collect(),
+        visible: of.detection_limits().map(limit).collect(),
         learned: learned::learned(of),
         gap: Gaps {
             fit: BeforeAfter::new(before.fit, after.fit),

@@ -60,7 +60,7 @@ pub(super) fn text(of: &Answer) -> String {
         out += &missing(of).first().map_or_else(String::new, PlaceStiffness::sentence);
     }
     out += &learned::text(of);
-    if !of.discovery.detection_limits.is_empty() {
+    if of.detection_limits().next().is_some() {
         out += &format!(
             "\ndetection limits: a usual size of each effect, relative to the smallest that would be found\n{}",
             detection_limits(of)
@@ -125,7 +125,7 @@ fn remaining(of: &Answer) -> String {
 /// Detection limits as a table.
 fn detection_limits(of: &Answer) -> String {
     let mut table = Table::new(["effect", "at", "times_the_limit", "of_this_size"]);
-    for own in &of.discovery.detection_limits {
+    for own in of.detection_limits() {
         let of_effect = effects::units(&own.effect);
         let usual = own.default_size.iter().map(|(name, value)| {
             let si = of_effect.get(name).map_or("1", String::as_str);
