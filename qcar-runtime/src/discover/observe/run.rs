@@ -164,12 +164,12 @@ impl Stimulus {
         }
     }
 
-    /// True for a record at whose beginning no sensor shows a position or a velocity.
-    pub fn begins_unmeasured(&self) -> bool {
-        let Stimulus::History { restarts, .. } = self else {
+    /// True for a free decay at whose beginning no sensor shows a position or a velocity.
+    pub fn is_unmeasured_decay(&self) -> bool {
+        let Stimulus::History { inputs, restarts, .. } = self else {
             return false;
         };
-        restarts.first().is_some_and(|first| first.readings.is_empty())
+        inputs.signals.is_empty() && restarts.first().is_some_and(|first| first.readings.is_empty())
     }
 
     /// Sensors that record the excitation: one of a sweep, one for each input of a history. None for a road, a K&C or

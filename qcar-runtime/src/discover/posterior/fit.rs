@@ -93,8 +93,9 @@ pub fn fit(
     posterior.fit(place, rounds, evaluations)
 }
 
-/// Initial states at the start of a fit. Those of a record of which the start knows none, and no sensor shows any, are
-/// estimated if the model is nonlinear: from rest, a fit would hardly see a law that acts at large travels only.
+/// Initial states at the start of a fit. Those of a free decay of which the start knows none, and no sensor shows any, are
+/// estimated if the model is nonlinear: from rest, nothing moves, and a fit would hardly see a law that acts at large
+/// travels only.
 fn initial_states(
     model: &dyn Model,
     start: &Start<'_>,
@@ -107,7 +108,7 @@ fn initial_states(
     let mut conditions = nuisance.conditions(evidence, &coefficients);
     if !model.about().linear {
         let is_known = |run: &Run| start.initial_states.iter().any(|(known, _)| known.run == run.name);
-        let is_wanted = |run: &Run| run.role == Role::Fit && run.stimulus.begins_unmeasured() && !is_known(run);
+        let is_wanted = |run: &Run| run.role == Role::Fit && run.stimulus.is_unmeasured_decay() && !is_known(run);
         let sensors = (nuisance, coefficients.as_slice());
         estimate_initial_states(model, start.values, sensors, evidence, is_wanted, &mut conditions)?;
     }

@@ -13,7 +13,8 @@ use crate::discover::observe::Evidence;
 const OF_EACH_SIZE: usize = 2;
 
 /// The most probable sets of no effect, of one, and so on up to the number of the set `best`, with the ranges of the model
-/// file for their parameters at an end of the campaign's range. Sets without such a parameter are left out.
+/// file for their parameters at an end of the campaign's range. Sets without such a parameter are left out, and those that
+/// even so are certainly less probable than the set `best`.
 pub fn with_ranges_of_model(sets: &[Set], best: usize, evidence: &Evidence) -> Vec<Set> {
     let is_open = |place: &usize| !sets[*place].beyond_range().is_empty();
     let of_size = |size: usize| {
@@ -25,5 +26,6 @@ pub fn with_ranges_of_model(sets: &[Set], best: usize, evidence: &Evidence) -> V
     let wider = open
         .par_iter()
         .filter_map(|&place| sets[place].with_ranges_of_model(evidence));
-    wider.collect()
+    let least = sets[best].log_posterior() - evidence.numbers.odds_of_certain().ln();
+    wider.filter(|own| own.log_posterior() >= least).collect()
 }
