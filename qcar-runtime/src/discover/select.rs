@@ -387,7 +387,7 @@ fn refit_best(sets: &mut Vec<Set>, evidence: &Evidence) {
     let open: Vec<usize> = (0..sets.len()).filter(is_open).collect();
     let again = open
         .par_iter()
-        .filter_map(|&place| sets[place].from_small_discrepancy(evidence));
+        .filter_map(|&place| sets[place].at_small_discrepancy(evidence));
     let again: Vec<Set> = again.collect();
     open.iter().for_each(|&place| sets[place].refitted = true);
     again.into_iter().for_each(|own| keep_best(own, sets));

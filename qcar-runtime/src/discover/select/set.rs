@@ -96,7 +96,7 @@ impl Set {
     /// The set fitted again from its optimum with the smallest discrepancy; `None` if the fit fails. A fit alternates
     /// between the parameters and the discrepancy. Where the parameters are wrong, the discrepancy is large, and then
     /// hardly anything is gained by better ones: a local minimum, which this fit leaves.
-    pub fn from_small_discrepancy(&self, evidence: &Evidence) -> Option<Self> {
+    pub fn at_small_discrepancy(&self, evidence: &Evidence) -> Option<Self> {
         let hypothesis = self.assembly.hypothesis();
         let steady = self.steady(evidence);
         let from = Place {

@@ -96,7 +96,7 @@ impl Unknowns {
         let parameters = self.parameters(explanation);
         let mut free = parameters.iter().filter(|(_, _, error)| *error != 0.0);
         // An error that is not a number is one of an undetermined parameter.
-        free.clone().next().is_some() && free.all(|(_, value, error)| !(*error <= value.abs()))
+        free.clone().next().is_some() && free.all(|(_, value, error)| error.is_nan() || *error > value.abs())
     }
 
     /// Estimates of the effect: name, value and standard error, SI. The error is 0 for a fixed parameter.
