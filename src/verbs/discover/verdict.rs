@@ -64,10 +64,11 @@ fn unexplained(of: &Answer) -> String {
         );
     }
     let missing = "something is missing that no effect of the catalogue explains";
-    if gap.fit <= LARGE && gap.held_out > LARGE && of.discovery.learned.is_none() {
+    let predicts_badly = gap.held_out > LARGE;
+    if gap.fit <= LARGE && predicts_badly && of.discovery.learned.is_none() {
         let left = number(gap.held_out, 3);
         format!("{missing}: only the held-out runs show it, with residuals of {left} standard deviations")
-    } else if gap.fit <= LARGE && !(gap.held_out > LARGE) {
+    } else if gap.fit <= LARGE && !predicts_badly {
         "small residuals above noise remain that no effect of the catalogue explains".into()
     } else {
         missing.into()
