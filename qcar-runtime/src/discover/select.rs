@@ -16,6 +16,8 @@ mod race;
 mod multi_start;
 // A set of effects with its fit.
 mod set;
+// The fitted base model.
+mod base;
 // Sets with one more effect.
 mod extend;
 // Posterior probabilities of the sets.
@@ -40,15 +42,17 @@ mod ranges;
 mod learn;
 // The first learned law, before pairs and triples of effects are tried.
 mod first_law;
+// Whether a learned law takes the place of named effects.
+mod law_or_names;
 // Detection limits of effects that were not found.
 mod detection_limit;
 
 use std::sync::Arc;
 
-use rayon::iter::Either;
 use rayon::prelude::*;
 
-use assembly::{Assembly, Hypothesis, Place};
+use assembly::{Assembly, Hypothesis};
+use base::fit_base;
 use detection_limit::detection_limits;
 use exchange::{exchanges, other_forms};
 use extend::extensions;
@@ -56,20 +60,20 @@ use fidelity::Fidelity;
 use first_law::FirstLaw;
 use held_out::supported_part;
 use integration::AccuracyCheck;
-use probability::probabilities;
+use law_or_names::compare_with_law;
 use ranges::with_ranges_of_model;
 use reduce::reductions;
 use set::{
-    Set, best_base, excess, explained_share, held_out_judge, is_missing, keep_best, leaves_more_than_noise,
-    most_probable, predicts_worse_than_noise,
+    Set, best_base, explained_share, held_out_judge, is_missing, keep_best, leaves_more_than_noise, most_probable,
+    predicts_worse_than_noise,
 };
 use verdict::conclude;
 
 pub use multi_start::{Minimum, MultiStart, fit_from_starts};
 
-use super::answer::{DetectionLimit, Discovery, Learned, Progress, Update, Verdict, rms_text};
+use super::answer::{DetectionLimit, Discovery, Progress, Update, Verdict, rms_text};
 use super::candidate::Workshop;
-use super::numbers::{DOUBTFUL_BELOW, GREATER_PART, MOST_EFFECTS};
+use super::numbers::{GREATER_PART, MOST_EFFECTS};
 use super::observe::{Evidence, PredictError, Quieter, Run, Stimulus};
 use super::posterior::{Explanation, Refit, Setting};
 use crate::campaign::Role;
@@ -235,35 +239,6 @@ fn attempt(mut sets: Vec<Set>, evidence: &Evidence, progress: Progress<'_>) -> R
     Ok(Searched { discovery, sets, found })
 }
 
-/// Learns a law if the answer needs one, and replaces the findings by it if it is certainly more probable or explains
-/// what they leave. `found` is the position of the set of the answer.
-fn compare_with_law(
-    discovery: &mut Discovery,
-    found: usize,
-    sets: &[Set],
-    law: &mut FirstLaw,
-    evidence: &Evidence,
-    progress: Progress<'_>,
-) {
-    let (base, found) = (&sets[best_base(sets)], &sets[found]);
-    if is_unexplained(discovery, base, evidence) {
-        let first = law.for_base(sets, evidence, progress);
-        let learned = learn::learn(base, first, &sets[0], evidence, progress);
-        let explains = |law: &Set| explained_share(base, law, evidence) >= evidence.numbers.explained();
-        let is_explained = learned.as_ref().is_some_and(explains);
-        let learned = learned.map(|learned| learn::summary(base, learned, evidence));
-        discovery.take(learned, is_explained);
-    } else if discovery.verdict != Verdict::None && is_doubtful(found, base, evidence) {
-        // Several effects together can imitate a law that is not in the catalogue.
-        let law = law.for_base(sets, evidence, progress);
-        let law = law.filter(|law| learn::is_supported(law, base, evidence));
-        let is_certain = |law: &Set| probabilities(&[found, law], evidence)[1] > evidence.numbers.certain();
-        let law = law.filter(|law| is_certain(law) || explains_instead(law, found, base, evidence));
-        let law = law.filter(|law| contradicts(law, found, evidence));
-        discovery.prefer(law.map(|law| learn::summary(base, law, evidence)));
-    }
-}
-
 /// Detection limits of the effects that a base model lacks, from the fitted runs.
 fn limits(base: &Set, evidence: &Evidence) -> Vec<DetectionLimit> {
     let refit = &base.explanation.refit;
@@ -285,42 +260,6 @@ fn needs_no_further_effect(sets: &[Set], set: usize, evidence: &Evidence) -> boo
     let answer = supported_part(sets, set, evidence);
     let explained = explained_share(&sets[best_base(sets)], &sets[answer], evidence);
     answer != set && explained >= GREATER_PART
-}
-
-/// True if something is probably missing that no effect of the catalogue explains: the verdict is `Unknown`, or it is
-/// `None` with a probability below one half or with fitted residuals above noise.
-fn is_unexplained(discovery: &Discovery, base: &Set, evidence: &Evidence) -> bool {
-    let is_improbable = |probability: f64| probability < DOUBTFUL_BELOW;
-    match discovery.verdict {
-        Verdict::Unknown => true,
-        Verdict::None => discovery.probability.is_some_and(is_improbable) || leaves_more_than_noise(base, evidence),
-        Verdict::Found | Verdict::Class => false,
-    }
-}
-
-impl Discovery {
-    /// Stores a learned law if the verdict is `Unknown`. A law by which enough of the excess residual `is_explained`
-    /// turns the verdict `None` into `Unknown`: something is missing, however small.
-    fn take(&mut self, learned: Option<Learned>, is_explained: bool) {
-        if is_explained && self.verdict == Verdict::None {
-            self.verdict = Verdict::Unknown;
-            self.probability = None;
-        }
-        self.learned = learned.filter(|_| self.verdict == Verdict::Unknown);
-    }
-
-    /// Replaces the findings with a law that is more probable; does nothing if `law` is `None`.
-    fn prefer(&mut self, law: Option<Learned>) {
-        if law.is_some() {
-            self.verdict = Verdict::Unknown;
-            self.probability = None;
-            self.findings.clear();
-            self.alternatives = 0;
-            self.after = self.before.clone();
-            self.nuisances[1] = self.nuisances[0].clone();
-            self.learned = law;
-        }
-    }
 }
 
 /// Beam width: the number of one-effect sets that are extended while an effect is still missing. The best pair may not
@@ -409,31 +348,6 @@ fn unreduced(sets: &[Set], evidence: &Evidence) -> Option<usize> {
     [best, supported_part(sets, best, evidence)].into_iter().find(open)
 }
 
-/// True if a learned law contradicts the named effects: it is at a place without a named effect, or it explains most of
-/// the excess residual that they leave. A law that fits only a little better at the same place confirms the effect
-/// there, which also has a physical cause.
-fn contradicts(law: &Set, found: &Set, evidence: &Evidence) -> bool {
-    let named: Vec<&str> = found.named().map(|own| own.at.as_str()).collect();
-    let agrees = law.named().all(|own| named.contains(&own.at.as_str()));
-    !agrees || explained_share(found, law, evidence) >= GREATER_PART
-}
-
-/// True if a learned law explains nearly all of the excess residual, and the named effects leave too much of it to be an
-/// explanation. Their evidence may be larger even so, because the discrepancy accounts for the rest.
-fn explains_instead(law: &Set, found: &Set, base: &Set, evidence: &Evidence) -> bool {
-    explained_share(base, found, evidence) < evidence.numbers.explained()
-        && explained_share(base, law, evidence) >= evidence.numbers.certain()
-}
-
-/// True if a learned law must be tried against the answer: the answer has several effects, leaves a significant part of
-/// the excess residual, or the base model has no excess residual.
-fn is_doubtful(found: &Set, base: &Set, evidence: &Evidence) -> bool {
-    let explained = explained_share(base, found, evidence);
-    found.names().len() > 1
-        || explained < evidence.numbers.certain()
-        || excess(&base.with_sensors_of(found, evidence), evidence) <= 0.0
-}
-
 fn best(sets: &[Set]) -> usize {
     most_probable(sets, 0..sets.len()).unwrap_or(0)
 }
@@ -446,59 +360,6 @@ fn report(set: &Set, evidence: &Evidence, progress: Progress<'_>) {
         let words = format!("with {} it leaves {left}", names.join(" and "));
         progress(Update::Interim(&words, &set.findings(), &set.explanation));
     }
-}
-
-/// Start points of the base model, as in [`setting_spread`]: the given values, and two about a third of the way to the
-/// bounds. A choice.
-const SPREAD: [f64; 3] = [0.0, 0.35, -0.35];
-/// Rounds and evaluations of the base fit on coarse, medium and fine data. A choice.
-const BASE: [(usize, usize); 3] = [(2, 10), (2, 10), (2, 20)];
-
-/// The fitted base model. Searches from several start points on coarse data and refines the best on finer data.
-fn fit_base(assembly: Assembly, evidence: &Evidence) -> Result<Set, PredictError> {
-    let fidelity = Fidelity::of(evidence);
-    let hypothesis = assembly.hypothesis();
-    let starts = SPREAD.par_iter().map(|&spread| {
-        let from = Place {
-            named: setting_spread(&assembly, spread),
-            ..Place::given(&fidelity.coarse)
-        };
-        hypothesis.fit(&from, &fidelity.coarse, BASE[0])
-    });
-    let (fitted, failures): (Vec<_>, Vec<_>) = starts.partition_map(|start| match start {
-        Ok(refit) => Either::Left(refit),
-        Err(error) => Either::Right(error),
-    });
-    let is_number = |refit: &Refit| refit.log_evidence.is_finite();
-    let order = |a: &Refit, b: &Refit| a.log_evidence.total_cmp(&b.log_evidence);
-    // A base model that cannot be predicted is an error. A candidate that cannot be predicted is dropped.
-    let failure = failures.into_iter().next().unwrap_or(PredictError::NoNumber);
-    let best = fitted.into_iter().filter(is_number).max_by(order).ok_or(failure)?;
-    let medium = hypothesis.fit(&hypothesis.place(&best), &fidelity.medium, BASE[1])?;
-    let fine = hypothesis.fit(&hypothesis.place(&medium), &fidelity.fine, BASE[2])?;
-    let explanation = hypothesis.explanation(fine, evidence)?;
-    if !is_number(&explanation.refit) {
-        return Err(PredictError::NoNumber);
-    }
-    Ok(Set::new(assembly, explanation, 0.0))
-}
-
-/// Start values for the base model: moves each given value by the share `|spread|` towards a bound of its range. Even
-/// places move in the direction of the sign of `spread`, odd places against it.
-fn setting_spread(assembly: &Assembly, spread: f64) -> std::collections::BTreeMap<String, f64> {
-    let moved = |(k, given): (usize, &super::posterior::Given)| {
-        let (low, high) = given.range?;
-        let shift = if k.is_multiple_of(2) { spread } else { -spread };
-        let end = if shift < 0.0 { low } else { high };
-        let share = shift.abs();
-        let moved = if low > 0.0 && given.value > 0.0 {
-            given.value * (end / given.value).powf(share)
-        } else {
-            given.value + (end - given.value) * share
-        };
-        Some((given.name.clone(), moved))
-    };
-    assembly.given().iter().enumerate().filter_map(moved).collect()
 }
 
 /// Explanation of all runs by a fit; `None` if the prediction fails or the evidence is not finite.

@@ -3,12 +3,13 @@
 use rayon::prelude::*;
 
 use super::assembly::{Assembly, Place};
+use super::base::BASE;
 use super::fidelity::{DECIMATION, Fidelity};
 use super::finite_explanation;
 use super::race::{Dropped, Finalist, entrants, race};
 use super::screen::{Point, Screened, Screening};
 use super::set::{Set, above_noise, is_missing, keep_best};
-use super::{BASE, Progress, Update};
+use super::{Progress, Update};
 use crate::discover::answer::Rival;
 use crate::discover::candidate::Candidate;
 use crate::discover::noise::AccuracyClass;
