@@ -68,5 +68,10 @@ impl Shown<'_> {
 
 /// A value rounded to six digits: a factor between units adds further ones, which say nothing.
 pub fn six_digits(value: f64) -> f64 {
-    format!("{value:.5e}").parse().unwrap_or(value)
+    rounded(value, 6)
+}
+
+/// A value rounded to a number of digits, at least 1.
+pub fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
 }

@@ -7,6 +7,7 @@ use super::reading::RunData;
 use super::steps;
 use super::table::{self, Table};
 use crate::error::{InputError, Place, Problem};
+use crate::shown::six_digits;
 
 /// A recorded run.
 #[derive(Clone, Debug, PartialEq)]
@@ -137,13 +138,12 @@ fn check_time(table: &Table, time: &[f64], sample_rate: f64) -> Result<(), Input
             "sort the record, or remove duplicate samples",
         );
     }
-    let short = |value: f64| format!("{value:.5e}").parse::<f64>().unwrap_or(value);
     let (typical, mean) = (steps::median(&intervals), (time[last] - time[0]) / last as f64);
     // Printed times are rounded, which changes the median, and a gap changes the mean.
     if ![typical, mean].iter().any(|&step| steps::is_near(step, sample_rate)) {
         let (found, expected) = (
-            format!("steps of {} s", short(typical)),
-            format!("steps of {} s by `sample_rate = {sample_rate}`", short(dt)),
+            format!("steps of {} s", six_digits(typical)),
+            format!("steps of {} s by `sample_rate = {sample_rate}`", six_digits(dt)),
         );
         return at(
             1,
@@ -153,14 +153,14 @@ fn check_time(table: &Table, time: &[f64], sample_rate: f64) -> Result<(), Input
         );
     }
     if let Some(row) = intervals.iter().position(|&step| !steps::is_one(step, sample_rate)) {
-        let found = format!("a step of {} s", short(intervals[row]));
+        let found = format!("a step of {} s", six_digits(intervals[row]));
         let remedy = "a gap cannot be filled: export the record again, or cut it before the gap";
-        return at(row + 1, found, format!("a step of {} s", short(dt)), remedy);
+        return at(row + 1, found, format!("a step of {} s", six_digits(dt)), remedy);
     }
     let measured = 1.0 / mean;
     if !steps::agree(measured, sample_rate, last) {
         let (found, expected) = (
-            format!("{} samples a second", short(measured)),
+            format!("{} samples a second", six_digits(measured)),
             format!("`sample_rate = {sample_rate}`"),
         );
         return at(last, found, expected, "correct `sample_rate` in campaign.toml");

@@ -5,7 +5,7 @@ use qcar_signals::resample::Grid;
 
 use super::contents::{Quantity, Role, Run, Test};
 use super::finding::Finding;
-use crate::shown::shown;
+use crate::shown::{rounded, shown};
 
 /// Flaws of the samples of a sensor in a run; `unit` is its SI unit.
 pub(super) fn of_samples(run: &Run, (channel, unit): (&str, &str), samples: &[f64], grid: Grid) -> Vec<Finding> {
@@ -21,9 +21,7 @@ pub(super) fn of_samples(run: &Run, (channel, unit): (&str, &str), samples: &[f6
 }
 
 fn description(flaw: &Flaw, unit: &str) -> String {
-    let (count, short) = (flaw.count, |value: f64| {
-        shown(format!("{value:.3e}").parse().unwrap_or(value), unit)
-    });
+    let (count, short) = (flaw.count, |value: f64| shown(rounded(value, 4), unit));
     match flaw.kind {
         FlawKind::Dead(0.0) => "every sample is 0: the channel is dead, or there was nothing to measure".into(),
         FlawKind::Dead(value) => format!("every sample is {}: the channel is dead", shown(value, unit)),

@@ -14,7 +14,7 @@ use crate::discover::noise::AccuracyClass;
 use crate::discover::numbers::{Numbers, ONE_SIDED};
 use crate::discover::observe::Evidence;
 use crate::discover::posterior::{Explanation, Refit};
-use crate::shown::shown;
+use crate::shown::{rounded, shown};
 
 /// Rounds and evaluations of a fit to other evidence from a known optimum. A choice, ample so near an optimum.
 const AGAIN: (usize, usize) = (2, 20);
@@ -166,10 +166,8 @@ impl Set {
         let note = |(name, range): &(String, (f64, f64))| {
             let (_, value) = self.explanation.named.iter().find(|(own, _)| own == name)?;
             let unit = about.parameters.iter().find(|own| own.name == *name)?.unit.clone();
-            let [value, lower, upper] = [*value, range.0, range.1].map(|value| {
-                let short = format!("{value:.3e}").parse().unwrap_or(value);
-                shown(short, &unit).to_string()
-            });
+            let [value, lower, upper] =
+                [*value, range.0, range.1].map(|value| shown(rounded(value, 4), &unit).to_string());
             Some(format!(
                 "{name} = {value} explains the data better than any value in its range in the campaign, {lower} to \
                  {upper}: check that range"
