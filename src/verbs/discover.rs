@@ -49,7 +49,7 @@ pub(crate) mod result;
 mod text;
 // The residuals as a figure.
 mod figure;
-// Notices about sensors.
+// Notices about sensors and ranges.
 mod notices;
 // Results of a search that was stopped.
 mod unfinished;

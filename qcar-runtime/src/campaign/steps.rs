@@ -7,8 +7,8 @@ const RATE_TOLERANCE: f64 = 1e-3;
 /// Largest relative deviation of a step from the mean if the shortest and the longest step are to count as equal.
 const ALIKE: f64 = 0.1;
 
-/// Largest relative deviation of a typical step from one sample. The most usual mistake is a rate that was halved or
-/// doubled.
+/// Largest relative deviation of a typical step from one sample. A choice, midway between none and that of half the true
+/// rate, 0.5.
 const NEAR: f64 = 0.25;
 
 /// True if a step is one sample long, instead of none or two. Printed times are rounded, so a single step is only this

@@ -2,8 +2,9 @@
 //! ones at the start of a fit.
 //!
 //! Sensors do not measure all states of the masses at the first sample, and where a record restarts, their readings are
-//! noisy. The maximum a posteriori of these states is found by Gauss-Newton steps. For a linear model the first step is exact. Where they end in a local minimum of a
-//! nonlinear model, they begin with a short part of the record and continue with parts twice as long.
+//! noisy. The maximum a posteriori of these states is found by Gauss-Newton steps. For a linear model the first step is
+//! exact. Where the steps end in a local minimum of a nonlinear model, they start again with a short part of the record
+//! and continue with parts twice as long.
 
 use std::ops::Range;
 
@@ -24,7 +25,8 @@ use crate::transmissibility::Point;
 const STEPS: usize = 10;
 /// Factor on a step that was too long.
 const SHORTER: f64 = 0.25;
-/// Mean periods in the shortest part of a record. A choice: within half a period, no phase error can add up.
+/// Mean periods in the shortest part of a record. A choice: a phase error hardly grows within half a period. Two periods
+/// were too long for a mass that hits a stiff stop.
 const SHORTEST: f64 = 0.5;
 /// Relative decrease of the sum of squares below which the steps end.
 const CONVERGED: f64 = 1e-4;
@@ -100,17 +102,18 @@ impl Record<'_> {
 
     /// Beginnings of the record, each half as long as the one before, down to [`SHORTEST`].
     fn beginnings(&self, evidence: &Evidence) -> Vec<Evidence> {
-        let own = |of: &Evidence| -> Vec<Series> {
-            let own = of.series.iter().filter(|series| series.run == self.place);
-            own.cloned().collect()
-        };
-        let periods = own(evidence).into_iter().map(|series| 2.0 * series.half_a_period());
+        let is_own = |series: &&Series| series.run == self.place;
+        let periods = evidence
+            .series
+            .iter()
+            .filter(is_own)
+            .map(|own| 2.0 * own.half_a_period());
         let shortest = SHORTEST * periods.fold(0.0, f64::max);
-        let is_long_enough = |of: &Evidence| {
-            let span = |series: &Series| series.at[series.at.len() - 1] - series.at[0];
-            let suffices = |series: &Series| series.at.len() > self.unknown.len() && span(series) >= shortest;
-            own(of).iter().all(suffices)
+        let suffices = |own: &Series| match own.at[..] {
+            [first, .., last] => own.at.len() > self.unknown.len() && last - first >= shortest,
+            _ => false,
         };
+        let is_long_enough = |of: &Evidence| of.series.iter().filter(is_own).all(suffices);
         let half = |of: &Evidence| Some(of.thinned(2)).filter(is_long_enough);
         std::iter::successors(half(evidence), half).collect()
     }
