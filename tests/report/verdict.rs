@@ -30,6 +30,7 @@ fn where_much_is_left_it_is_partly_explained() {
     let partly = verdict(
         &browser,
         &with(|data| {
+            data["discover"]["partly_explained"] = json!(true);
             data["discover"]["left"][0]["after_percent"] = json!(18.0);
             data["discover"]["by_channel"]["wheel_z"]["after"] = json!(7.0);
         }),
