@@ -148,6 +148,14 @@ fn a_damper_that_keeps_a_slope_is_named() {
     is_found(&discover(folder.path(), None), "digressive_damper", &[]);
 }
 
+/// A damper whose force is a power of the speed, without any slope at rest.
+#[test]
+fn a_damper_of_a_power_law_is_named() {
+    let folder = on_a_crank(|s, v| 1000.0 * s + 1500.0 * v.abs().powf(0.6) * v.signum(), (1.0, 3.0));
+    let truth = [("exponent", 0.6, 0.03)];
+    is_found(&discover(folder.path(), None), "digressive_damper", &truth);
+}
+
 /// An air spring: 20 kN/m at rest, a column of 60 mm, and the polytropic exponent 1.35.
 #[test]
 fn a_column_of_gas_is_named() {
@@ -227,6 +235,19 @@ fn a_smooth_friction_of_a_lightly_damped_mass_is_named_alone() {
     );
 }
 
+/// The same mass with a friction that is still a tenth below its 12 N at six times the speed at which it is a half of it.
+#[test]
+#[ignore = "a whole search; .ci/run runs it"]
+fn a_friction_that_rises_slowly_is_named_alone() {
+    let folder = lightly_damped(|_, v| 12.0 * (v / 3e-3).atan() / (TAU / 4.0));
+    let answer = discover(folder.path(), None);
+    is_found(
+        &answer,
+        "coulomb_friction",
+        &[("f_coulomb", 12.0, 0.02), ("v_slip", 3e-3, 0.05)],
+    );
+}
+
 #[test]
 fn a_fit_follows_a_law_that_is_sharp_within_a_step() {
     let folder = lightly_damped(|_, v| 12.0 * (v / 1e-3).tanh());
@@ -275,6 +296,53 @@ fn lightly_damped(law: impl Fn(f64, f64) -> f64) -> tempfile::TempDir {
     ];
     let folder = tempfile::tempdir().expect("a folder");
     write(folder.path(), &head.concat(), (800.0, true), runs.into());
+    folder
+}
+
+/// A drum with the weight of its imbalance on a radius of 0.3 m: 45 N, which it turns by up to a third of a revolution.
+#[test]
+fn the_weight_of_an_unbalanced_drum_is_named() {
+    let folder = drum(|x| 45.0 * (x / 0.3).sin());
+    let truth = [("k_ground", 150.0, 0.02), ("radius", 0.3, 0.02)];
+    is_found(&discover(folder.path(), None), "spring_to_ground", &truth);
+}
+
+/// Two cables hold the drum, which are slack at first: an elastic force against the ground that no effect describes.
+#[test]
+#[ignore = "a whole search; .ci/run runs it"]
+fn a_law_of_the_position_is_learned() {
+    let folder = drum(|x| 20.0 * x + 400.0 * (x.abs() - 0.2).max(0.0) * x.signum() + 600.0 * (-x - 0.3).max(0.0).powi(2));
+    let answer = discover(folder.path(), None);
+    assert_eq!(answer["verdict"], "unknown", "{answer}");
+    let law = &answer["learned"]["laws"][0];
+    assert_eq!((&law["name"], &law["at"]), (&"ground_law".into(), &"body".into()), "{answer}");
+    assert!(answer["learned"]["explained"].as_f64().expect("a share") > 0.9, "{answer}");
+}
+
+/// A campaign of a drum of 95 kg with a drag of 20 N s/m, whose model knows no force that depends on its position.
+fn drum(law: impl Fn(f64) -> f64) -> tempfile::TempDir {
+    let force = |(size, run): (f64, usize), t: f64| -> f64 {
+        let sine = |k: usize| (TAU * 0.11 * k as f64 * t + (k * k * (run + 3)) as f64).sin();
+        (1..12).map(sine).sum::<f64>() * size
+    };
+    let runs = [(12.0, 0), (18.0, 1), (15.0, 2)].map(|run| {
+        let rates = |_: f64, [x, v]: [f64; 2], force: f64| [v, (force - 20.0 * v - law(x)) / 95.0];
+        let motion = integrate(rates, |t, _| force(run, t), (1e-3, 20, 1500));
+        vec![
+            ("force", 0.1, motion.iter().map(|(_, force)| *force).collect()),
+            ("body", 1e-3, motion.iter().map(|(x, _)| x[0]).collect()),
+        ]
+    });
+    let head = [
+        "format = 1\nname = \"drum\"\nmodel = \"screw_drive\"\n".to_owned(),
+        parameter("m_body", 110.0, "kg", (20.0, 500.0)),
+        parameter("c_body", 15.0, "N s/m", (1.0, 500.0)),
+        parameter("f_offset", 0.0, "N", (-20.0, 20.0)),
+        channel("force", "motor", "x", "force", "N"),
+        channel("body", "body", "x", "displacement", "m"),
+    ];
+    let folder = tempfile::tempdir().expect("a folder");
+    write(folder.path(), &head.concat(), (50.0, true), runs.into());
     folder
 }
 

@@ -1,7 +1,7 @@
 //! Derivatives of the signals of a replay by parameters, inputs and initial states, integrated with the motion.
 //!
-//! Each stage of the Runge-Kutta method is differentiated with the model's own Jacobians: `K = A S + ∂f/∂p`, or `A S +
-//! B u` for the log amplitude of an input. So the result is the derivative of the computed motion itself, whatever the
+//! Each stage of the Runge-Kutta method is differentiated with the model's own Jacobians: `K = A S + ∂f/∂p`, `A S +
+//! B u` for the log amplitude of an input, or `A S + B` for its zero. So the result is the derivative of the computed motion itself, whatever the
 //! length of its steps. At a kink of a law the stage decides which side counts; forces are continuous there, so the
 //! sensitivities do not jump. Where a state decays within a step, its derivatives follow the exponential method of
 //! [`decay`](super::decay), even if the motion does not: it may rest there, but its derivatives would grow.
@@ -32,6 +32,8 @@ pub enum Direction {
     Parameters(Vec<usize>),
     /// The log amplitude of an excitation.
     Amplitude(usize),
+    /// A constant that is added to the force of an excitation.
+    Zero(usize),
     /// The initial value of a state.
     Initial(usize),
 }

@@ -21,7 +21,7 @@ pub struct Spread {
     pub measured: Vec<(Point, f64)>,
     /// Of other positions, velocities, accelerations and forces, from their size in the record; zero if it is unknown.
     pub unmeasured: [f64; 4],
-    /// Of the zero of each sensor, which changes from run to run.
+    /// Of the zero of each sensor and each recorded force, which changes from run to run.
     pub zeros: Vec<(Point, f64)>,
 }
 

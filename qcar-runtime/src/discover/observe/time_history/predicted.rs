@@ -16,7 +16,7 @@ use crate::simulate::{Between, Reading, Recorded, Replay};
 use crate::transmissibility::Point;
 
 /// Predicts the sensors of a run with derivatives by the `free` parameters, by the amplitudes of its inputs unless
-/// `free` is empty, and by the initial states if `by_states` is true.
+/// `free` is empty, and by the initial states and the zeros if `by_states` is true.
 pub fn history(
     model: &dyn Model,
     values: &Values,
@@ -44,13 +44,16 @@ pub fn history(
     } else {
         Vec::new()
     };
-    let states: Vec<usize> = unknown.iter().filter_map(|(name, _)| place_of(about, name)).collect();
-    let directions = directions(model, values, free, inputs, &states);
+    let initial = |(name, _): &(String, f64)| {
+        let of_state = place_of(about, name).map(Direction::Initial);
+        Some((name.clone(), of_state.or_else(|| zero_of_input(about, inputs, name))?))
+    };
+    let (names, initial): (Vec<String>, Vec<Direction>) = unknown.iter().filter_map(initial).unzip();
+    let directions = directions(model, values, free, inputs, initial);
     let mut along = replay.along(&base, (p, &deviations), &directions).into_iter();
-    let names = states.iter().map(|&state| about.states[state].name.to_string());
     let replays = Replays {
         by_parameter: along.by_ref().take(free.len()).collect(),
-        by_initial_states: names.zip(along.by_ref()).collect(),
+        by_initial_states: names.into_iter().zip(along.by_ref()).collect(),
         by_drive: along.collect(),
         base: with_zeros(base.signals, &sensors, conditions.initial_states_of(run)),
     };
@@ -64,30 +67,29 @@ pub fn history(
         };
         let mut prediction = replays.prediction(place, &reader, *rate);
         if by_states {
-            prediction.by_initial_states.extend(by_zeros(spread, series));
+            prediction.by_initial_states.extend(by_zeros(spread, &sensors, series));
         }
         prediction
     };
     Ok(places.iter().zip(&series).enumerate().map(predict).collect())
 }
 
-/// What the signals are differentiated by: the free parameters with those that follow them, the initial values of some
-/// states, and the amplitudes of the inputs.
+/// What the signals are differentiated by: the free parameters with those that follow them, initial values and zeros, and
+/// the amplitudes of the inputs.
 fn directions(
     model: &dyn Model,
     values: &Values,
     free: &[Free],
     inputs: &Recordings,
-    states: &[usize],
+    initial: Vec<Direction>,
 ) -> Vec<Direction> {
     let about = model.about();
     let parameters = free
         .iter()
         .map(|free| Direction::Parameters(values.tied_to(free.parameter)));
-    let states = states.iter().map(|&state| Direction::Initial(state));
     let driven = inputs.signals.iter().filter(|_| !free.is_empty());
     let amplitudes = driven.filter_map(|(point, _)| excitation_of(about, point).map(Direction::Amplitude));
-    parameters.chain(states).chain(amplitudes).collect()
+    parameters.chain(initial).chain(amplitudes).collect()
 }
 
 /// Samples of the sensors of a run.
@@ -100,7 +102,7 @@ struct Replays {
     by_parameter: Vec<Signals>,
     /// By the log amplitude of each input.
     by_drive: Vec<Signals>,
-    /// By each unknown initial state, with its name.
+    /// By each unknown initial state and zero of an input, with its name.
     by_initial_states: Vec<(String, Signals)>,
 }
 
@@ -188,12 +190,12 @@ fn between(signal: &[f64], place: f64) -> (f64, f64) {
 
 /// True samples of each input of a run, under these test conditions.
 fn driven<'a>(inputs: &'a Recordings, conditions: &TestConditions, run: usize) -> Vec<Cow<'a, [f64]>> {
-    let of = |(input, (_, samples)): (usize, &'a (Point, Vec<f64>))| {
-        let factor = conditions.drive_of(run, input);
-        if factor == 1.0 {
+    let of = |(input, (point, samples)): (usize, &'a (Point, Vec<f64>))| {
+        let (factor, zero) = (conditions.drive_of(run, input), zero(point, conditions.initial_states_of(run)));
+        if (factor, zero) == (1.0, 0.0) {
             Cow::Borrowed(samples.as_slice())
         } else {
-            samples.iter().map(|sample| factor * sample).collect()
+            samples.iter().map(|sample| factor * sample + zero).collect()
         }
     };
     inputs.signals.iter().enumerate().map(of).collect()
@@ -268,20 +270,33 @@ fn place_of(about: &About, name: &str) -> Option<usize> {
 /// The signals with the zeros of their sensors.
 fn with_zeros(mut signals: Signals, sensors: &[&Point], initial_states: &[Initial]) -> Signals {
     for (signal, sensor) in signals.iter_mut().zip(sensors) {
-        let name = zero_of(sensor);
-        let zero: f64 = initial_states
-            .iter()
-            .filter(|own| own.state == name)
-            .map(|own| own.by)
-            .sum();
+        let zero = zero(sensor, initial_states);
         signal.iter_mut().for_each(|value| *value += zero);
     }
     signals
 }
 
-/// Derivatives of the values of a series by the zeros of all sensors, each with its name.
-fn by_zeros(spread: &Spread, series: &Series) -> impl Iterator<Item = (String, Vec<Complex<f64>>)> {
-    spread.zeros.iter().map(|(sensor, _)| {
+/// The zero of a sensor in a record.
+fn zero(sensor: &Point, initial_states: &[Initial]) -> f64 {
+    let name = zero_of(sensor);
+    let own = initial_states.iter().filter(|own| own.state == name);
+    own.map(|own| own.by).sum()
+}
+
+/// The direction in which the zero of an input moves; `None` for the zero of a response.
+fn zero_of_input(about: &About, inputs: &Recordings, name: &str) -> Option<Direction> {
+    let (point, _) = inputs.signals.iter().find(|(point, _)| zero_of(point) == name)?;
+    excitation_of(about, point).map(Direction::Zero)
+}
+
+/// Derivatives of the values of a series by the zeros of the responses, each with its name.
+fn by_zeros(
+    spread: &Spread,
+    responses: &[&Point],
+    series: &Series,
+) -> impl Iterator<Item = (String, Vec<Complex<f64>>)> {
+    let zeros = spread.zeros.iter().filter(|(sensor, _)| responses.contains(&sensor));
+    zeros.map(|(sensor, _)| {
         let slope = if *sensor == series.sensor { 1.0 } else { 0.0 };
         (zero_of(sensor), vec![Complex::from(slope); series.at.len()])
     })

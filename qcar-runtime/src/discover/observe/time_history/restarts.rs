@@ -17,8 +17,8 @@ use crate::transmissibility::Point;
 
 /// Offset of a sensor that measures an initial state, relative to the RMS of its readings.
 const OFFSET: f64 = 0.1;
-/// Change of the zero of a sensor from run to run, relative to the deviation of its readings. A choice: one percent, as
-/// of a gain.
+/// Change of the zero of a sensor or of a recorded force from run to run, relative to the deviation of its readings. A
+/// choice: one percent, as of a gain. The zero of a recorded motion needs none: it is integrated without its mean.
 const ZERO: f64 = 0.01;
 /// Factor on the size of a motion in its record, for the prior standard deviation of an initial state: it is nearly
 /// uninformative.
@@ -52,6 +52,7 @@ impl Spread {
             unmeasured,
             zeros: recorded
                 .iter()
+                .chain(inputs.iter().filter(|(point, _)| point.quantity == Quantity::Force))
                 .map(|(point, y)| (point.clone(), ZERO * deviation(y)))
                 .collect(),
         }

@@ -4,7 +4,7 @@
 use super::super::Reading;
 use super::Direction;
 use super::stages::Jacobians;
-use crate::model::{InputKind, LANES, Lanes, Matrix, Model};
+use crate::model::{Entry, InputKind, LANES, Lanes, Matrix, Model};
 
 /// A direct effect of a direction on a row.
 struct Source {
@@ -19,6 +19,8 @@ struct Source {
 enum Factor {
     /// Of a matrix, with the input whose amplitude changes.
     Input(usize, usize),
+    /// Of a matrix, for an input whose zero changes.
+    Unit(usize),
     /// Of the derivatives by the parameters.
     Parameter(usize),
 }
@@ -102,6 +104,7 @@ impl Effects {
                     let values = jacobians.parameter(nonzero);
                     places.for_each(|(place, point)| *place += values[point]);
                 }
+                Factor::Unit(nonzero) => places.for_each(|(place, point)| *place += jacobians.matrix(nonzero, point)),
                 Factor::Input(nonzero, input) => {
                     let u = jacobians.stages.u(input);
                     places.for_each(|(place, point)| *place += jacobians.matrix(nonzero, point) * u[point]);
@@ -131,14 +134,18 @@ fn factors(model: &dyn Model, direction: &Direction, of_outputs: bool) -> Vec<(u
     match direction {
         Direction::Initial(_) => Vec::new(),
         Direction::Amplitude(excitation) => {
-            let by_inputs = if of_outputs { Matrix::D } else { Matrix::B };
             let scales = |input: usize| match about.inputs[input].kind {
                 InputKind::Motion(place, _) | InputKind::Force(place) => usize::from(place) == *excitation,
                 InputKind::Gravity => false,
             };
-            let entries = about.matrices.iter().enumerate();
-            let own = entries.filter(|(_, entry)| entry.matrix == by_inputs && scales(entry.column.into()));
+            let own = by_inputs(model, of_outputs).filter(|(_, entry)| scales(entry.column.into()));
             own.map(|(nonzero, entry)| (entry.row.into(), Factor::Input(nonzero, entry.column.into())))
+                .collect()
+        }
+        Direction::Zero(excitation) => {
+            let is_it = |input: usize| about.inputs[input].kind == InputKind::Force(*excitation as u16);
+            let own = by_inputs(model, of_outputs).filter(|(_, entry)| is_it(entry.column.into()));
+            own.map(|(nonzero, entry)| (entry.row.into(), Factor::Unit(nonzero)))
                 .collect()
         }
         Direction::Parameters(parameters) => {
@@ -149,4 +156,11 @@ fn factors(model: &dyn Model, direction: &Direction, of_outputs: bool) -> Vec<(u
                 .collect()
         }
     }
+}
+
+/// The entries of the matrix by the inputs, of the states or of the outputs, each with its position.
+fn by_inputs(model: &dyn Model, of_outputs: bool) -> impl Iterator<Item = (usize, &Entry)> {
+    let matrix = if of_outputs { Matrix::D } else { Matrix::B };
+    let entries = model.about().matrices.iter().enumerate();
+    entries.filter(move |(_, entry)| entry.matrix == matrix)
 }
