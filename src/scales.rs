@@ -6,7 +6,7 @@
 //! response of the model about rest. A measured force of a link is used directly.
 
 use std::collections::BTreeMap;
-use std::f64::consts::TAU;
+use std::f64::consts::{SQRT_2, TAU};
 
 use qcar_dsl::check::Checked;
 use qcar_dsl::compile::derive_wanted;
@@ -16,7 +16,8 @@ use qcar_dsl::response::Wanted;
 use qcar_runtime::campaign::{Quantity as Measured, Role};
 use qcar_runtime::discover::Evidence;
 use qcar_runtime::discover::observe::{Kind, Run, Series, Stimulus, signal_of};
-use qcar_runtime::model::{About, Excitation, Model, Quantity, Signal, SignalKind};
+use qcar_runtime::mean::deviation;
+use qcar_runtime::model::{About, Excitation, Link, Model, Quantity, Signal, SignalKind};
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::response::ratio::Ratios;
 use qcar_runtime::spectrum::transform;
@@ -218,24 +219,28 @@ fn excitation(about: &About, reference: &Point) -> Option<usize> {
     })
 }
 
-/// Measured forces of links.
+/// Measured forces and stretches of links in records. The linear response can be far from them: near a resonance that a
+/// stiffening spring or friction limits, the travel is smaller.
 fn measured(about: &About, evidence: &Evidence) -> BTreeMap<String, f64> {
     let mut found = BTreeMap::new();
-    for (_, series) in evidence.of_role(Role::Fit) {
-        let Point { location, axis, .. } = &series.sensor;
-        let is_link = about
-            .links
-            .iter()
-            .any(|link| link.name == *location && link.axis == axis.name());
-        if is_link && series.kind == Kind::Time && series.sensor.quantity == Measured::Force {
-            let count = series.value.len() as f64;
-            let mean = series.value.iter().map(|value| value.re).sum::<f64>() / count;
-            let square = series.value.iter().map(|value| (value.re - mean).powi(2)).sum::<f64>() / count;
-            raise(
-                &mut found,
-                Scale::Force.name(axis.name(), location),
-                (2.0 * square).sqrt(),
-            );
+    for (_, series) in evidence.of_role(Role::Fit).filter(|(_, own)| own.kind == Kind::Time) {
+        let Point {
+            location,
+            axis,
+            quantity,
+            ..
+        } = &series.sensor;
+        let is_it = |link: &&Link| link.name == *location && link.axis == axis.name();
+        let scale = match quantity {
+            Measured::Force => Scale::Force,
+            Measured::Displacement => Scale::Travel,
+            Measured::Velocity => Scale::Speed,
+            Measured::Acceleration => continue,
+        };
+        if about.links.iter().any(|link| is_it(&link)) {
+            let samples: Vec<f64> = series.value.iter().map(|value| value.re).collect();
+            let amplitude = SQRT_2 * deviation(&samples);
+            raise(&mut found, scale.name(axis.name(), location), amplitude);
         }
     }
     found

@@ -379,6 +379,7 @@ fn derivatives_agree(model: &str, times: usize, within: f64, by_states: bool) {
                 replay.run(&moved, &begin).signals
             }),
             Direction::Amplitude(_) => both(STEP, &|by| if by > 0.0 { &up } else { &down }.run(&p, &begin).signals),
+            Direction::Zero(_) => unreachable!("a road has no zero"),
             Direction::Initial(state) => both(STEP * SIZES[state], &|by| {
                 let mut moved = begin.clone();
                 let own = moved.iter_mut().filter(|own| own.state == state);

@@ -47,6 +47,14 @@ pub struct Model {
     pub channels: Vec<Channel>,
 }
 
+impl Model {
+    /// True if a road, a motion or a force moves the model; without any, it can only decay freely.
+    pub fn is_excited(&self) -> bool {
+        let prescribed = |own: &Coordinate| matches!(own.kind, CoordinateKind::Road | CoordinateKind::Motion);
+        !self.forces.is_empty() || self.coordinates.iter().any(prescribed)
+    }
+}
+
 /// A declaration: its position, and its statement as one canonical line of model text.
 ///
 /// The line is printed from the syntax tree, not copied from the file. Files and inline macros therefore generate the

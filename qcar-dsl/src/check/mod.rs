@@ -181,10 +181,9 @@ fn refuses(found: &[Diagnostic]) -> bool {
 
 /// Checks that a model has outputs, and an input that moves it.
 fn something_is_seen(model: &Model) -> Vec<Diagnostic> {
-    let prescribed = |kind: &CoordinateKind| matches!(kind, CoordinateKind::Road | CoordinateKind::Motion);
     if model.outputs.is_empty() && model.channels.is_empty() {
         vec![outputs::no_outputs(Span::default())]
-    } else if model.forces.is_empty() && !model.coordinates.iter().any(|c| prescribed(&c.kind)) {
+    } else if !model.is_excited() {
         vec![outputs::no_excitation(Span::default())]
     } else {
         vec![]

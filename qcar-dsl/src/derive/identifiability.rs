@@ -118,10 +118,11 @@ fn unseen_by_responses(derived: &Derived) -> Vec<(Unseen, Diagnostic)> {
     described(derived.model, derived.estimated, &sets)
 }
 
-/// The first parameter set. Without any finite response, nothing can be said, and it hides nothing.
+/// The first parameter set. Without any finite response, nothing can be said, and it hides nothing. The same holds for a
+/// model that nothing excites: what its free decays show depends on how they begin.
 fn first_set(derived: &Derived) -> ParameterSet {
     let first = set(derived, Point::new(derived.model, Kind::Plain, 1), FEW_MOTIONS);
-    let is_blind = first.hidden.len() == derived.estimated.len();
+    let is_blind = first.hidden.len() == derived.estimated.len() || !derived.model.is_excited();
     let hidden = if is_blind { vec![] } else { first.hidden };
     ParameterSet { hidden, ..first }
 }
