@@ -40,6 +40,8 @@ mod exchange;
 mod ranges;
 // Learned laws for effects that the catalogue lacks.
 mod learn;
+// The strongest effect with a law of free form, instead of several effects.
+mod free_form;
 // The first learned law, before pairs and triples of effects are tried.
 mod first_law;
 // Whether a learned law takes the place of named effects.
@@ -58,6 +60,7 @@ use exchange::{exchanges, other_forms};
 use extend::extensions;
 use fidelity::Fidelity;
 use first_law::FirstLaw;
+use free_form::with_free_form;
 use held_out::supported_part;
 use integration::AccuracyCheck;
 use law_or_names::compare_with_law;
@@ -216,6 +219,9 @@ fn attempt(mut sets: Vec<Set>, evidence: &Evidence, progress: Progress<'_>) -> R
         progress(Update::Step("trying the rivals of each effect"));
         let others = exchanges(&sets[place], &sets, evidence);
         sets.extend(others);
+    }
+    if let Some(own) = with_free_form(&sets, best(&sets), evidence, progress) {
+        keep_best(own, &mut sets);
     }
     for own in with_ranges_of_model(&sets, best(&sets), evidence) {
         keep_best(own, &mut sets);

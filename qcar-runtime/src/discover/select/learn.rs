@@ -85,7 +85,8 @@ pub fn with_law(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Optio
     both.max_by(by_log_posterior)
 }
 
-fn most_probable_law(
+/// The set with the most probable one of some laws; `None` if none can be fitted.
+pub fn most_probable_law(
     set: &Set,
     laws: &[Candidate],
     start: &SearchStart,
