@@ -299,10 +299,19 @@ fn lightly_damped(law: impl Fn(f64, f64) -> f64) -> tempfile::TempDir {
     folder
 }
 
+/// The same mass on a spring whose rate grows with the fourth power of the travel: sixfold at 4 mm. The catalogue has no
+/// such form, and a second effect would make up for it.
+#[test]
+#[ignore = "a whole search; .ci/run runs it"]
+fn a_spring_of_another_form_is_named_alone() {
+    let folder = lightly_damped(|z, _| 5e4 * z * (z / 4e-3).powi(4));
+    is_found(&discover(folder.path(), None), "progressive_spring", &[]);
+}
+
 /// A drum with the weight of its imbalance on a radius of 0.3 m: 45 N, which it turns by up to a third of a revolution.
 #[test]
 fn the_weight_of_an_unbalanced_drum_is_named() {
-    let folder = drum(|x| 45.0 * (x / 0.3).sin());
+    let folder = drum(|x| 45.0 * (x / 0.3).sin(), 0.0);
     let truth = [("k_ground", 150.0, 0.02), ("radius", 0.3, 0.02)];
     is_found(&discover(folder.path(), None), "spring_to_ground", &truth);
 }
@@ -311,16 +320,32 @@ fn the_weight_of_an_unbalanced_drum_is_named() {
 #[test]
 #[ignore = "a whole search; .ci/run runs it"]
 fn a_law_of_the_position_is_learned() {
-    let folder = drum(|x| 20.0 * x + 400.0 * (x.abs() - 0.2).max(0.0) * x.signum() + 600.0 * (-x - 0.3).max(0.0).powi(2));
+    let cables = |x: f64| 400.0 * (x.abs() - 0.2).max(0.0) * x.signum() + 600.0 * (-x - 0.3).max(0.0).powi(2);
+    let folder = drum(|x| 20.0 * x + cables(x), 0.0);
     let answer = discover(folder.path(), None);
     assert_eq!(answer["verdict"], "unknown", "{answer}");
     let law = &answer["learned"]["laws"][0];
-    assert_eq!((&law["name"], &law["at"]), (&"ground_law".into(), &"body".into()), "{answer}");
-    assert!(answer["learned"]["explained"].as_f64().expect("a share") > 0.9, "{answer}");
+    assert_eq!(
+        (&law["name"], &law["at"]),
+        (&"ground_law".into(), &"body".into()),
+        "{answer}"
+    );
+    assert!(
+        answer["learned"]["explained"].as_f64().expect("a share") > 0.9,
+        "{answer}"
+    );
 }
 
-/// A campaign of a drum of 95 kg with a drag of 20 N s/m, whose model knows no force that depends on its position.
-fn drum(law: impl Fn(f64) -> f64) -> tempfile::TempDir {
+/// Nothing is missing: the load cell is off by 0.2 N, half a percent of what it measures, and no spring holds the drum.
+#[test]
+fn the_zero_of_a_load_cell_is_no_effect() {
+    let answer = discover(drum(|_| 0.0, 0.2).path(), None);
+    assert_eq!(answer["verdict"], "none", "{answer}");
+}
+
+/// A campaign of a drum of 95 kg with a drag of 20 N s/m, whose model knows no force that depends on its position. The
+/// load cell is off by `zero` (N).
+fn drum(law: impl Fn(f64) -> f64, zero: f64) -> tempfile::TempDir {
     let force = |(size, run): (f64, usize), t: f64| -> f64 {
         let sine = |k: usize| (TAU * 0.11 * k as f64 * t + (k * k * (run + 3)) as f64).sin();
         (1..12).map(sine).sum::<f64>() * size
@@ -329,7 +354,7 @@ fn drum(law: impl Fn(f64) -> f64) -> tempfile::TempDir {
         let rates = |_: f64, [x, v]: [f64; 2], force: f64| [v, (force - 20.0 * v - law(x)) / 95.0];
         let motion = integrate(rates, |t, _| force(run, t), (1e-3, 20, 1500));
         vec![
-            ("force", 0.1, motion.iter().map(|(_, force)| *force).collect()),
+            ("force", 0.1, motion.iter().map(|(_, force)| force + zero).collect()),
             ("body", 1e-3, motion.iter().map(|(x, _)| x[0]).collect()),
         ]
     });
@@ -337,7 +362,6 @@ fn drum(law: impl Fn(f64) -> f64) -> tempfile::TempDir {
         "format = 1\nname = \"drum\"\nmodel = \"screw_drive\"\n".to_owned(),
         parameter("m_body", 110.0, "kg", (20.0, 500.0)),
         parameter("c_body", 15.0, "N s/m", (1.0, 500.0)),
-        parameter("f_offset", 0.0, "N", (-20.0, 20.0)),
         channel("force", "motor", "x", "force", "N"),
         channel("body", "body", "x", "displacement", "m"),
     ];

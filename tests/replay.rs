@@ -258,6 +258,39 @@ fn derivatives_that_have_vanished_are_zero() {
     assert_eq!(slopes[1999], 0.0);
 }
 
+/// A mass under a constant force, and what this adds to its motion under another force.
+#[test]
+fn the_derivative_by_the_zero_of_a_force_is_the_response_to_a_constant_one() {
+    let model = find("one_mass").unwrap().model;
+    let place = |name: &str| model.about().parameters.iter().position(|p| p.name == name).unwrap();
+    let mut p = vec![0.0; model.about().parameters.len()];
+    (p[place("m_body")], p[place("c_body")], p[place("k_body")]) = (2.0, 6.0, 800.0);
+    let state = |name: &str| model.about().states.iter().position(|s| s.name == name).unwrap();
+    let replay = |samples: &[f64], by_zero: bool| {
+        let recorded = Recorded {
+            excitation: 0,
+            power: 0,
+            samples,
+        };
+        let readings = vec![Reading::State(state("z_body"))];
+        let how = band_limited(200.0, samples.len());
+        let replay = Replay::new(model, vec![recorded], how, Vec::new(), readings);
+        let base = replay.run(&p, &[]);
+        let along = |directions: &[Direction]| replay.along(&base, (&p, &[]), directions)[0][0].clone();
+        if by_zero {
+            along(&[Direction::Zero(0)])
+        } else {
+            base.signals[0].clone()
+        }
+    };
+    let slopes = replay(&rough_road(1.0, 200.0, 400), true);
+    let constant = replay(&[1.0; 400], false);
+    for (slope, constant) in slopes.iter().zip(&constant) {
+        assert!((slope - constant).abs() < 1e-12, "{slope}, {constant}");
+    }
+    assert!((slopes[399] - 1.0 / 800.0).abs() < 1e-4, "{}", slopes[399]);
+}
+
 /// A quarter car with the laws that have kinks: dry friction, a digressive and asymmetric damper, a bump stop, a
 /// progressive tyre.
 const WITH_KINKS: &str = "

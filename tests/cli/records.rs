@@ -433,6 +433,20 @@ fn with_stop(begin: [f64; 2]) -> Vec<f64> {
     samples
 }
 
+/// Of a model that nothing excites, a free decay shows what it shows of others.
+#[test]
+fn effects_apply_to_a_model_without_inputs() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("glider.axle");
+    let links = "link wire: body { spring k_body; }\n        link air: body { damper c_body; }";
+    let model = FREE.replace("link own: body { spring k_body; damper c_body; }", links);
+    fs::write(&path, model).unwrap();
+    for effect in ["coulomb_friction", "segmented_polynomial_damper"] {
+        let patched = succeeds(&["patch", path.to_str().unwrap(), effect, "--at", "air"]);
+        assert!(patched.contains(&format!("free_with_{effect}")), "{patched}");
+    }
+}
+
 /// No sensor shows how fast it is at first.
 #[test]
 fn a_record_that_starts_in_motion_needs_no_input() {

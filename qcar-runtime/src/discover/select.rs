@@ -312,12 +312,12 @@ fn second(sets: &[Set]) -> Option<usize> {
     most_probable(sets, open).filter(|_| extended.len() < BEAM)
 }
 
-/// The most probable set, if it has several effects, leaves more than noise, and the other forms of its effects have
-/// not been tried yet.
+/// The most probable set, if it has effects, leaves more than noise, and the other forms of its effects have not been
+/// tried yet.
 fn with_untried_forms(sets: &[Set], evidence: &Evidence) -> Option<usize> {
     let best = best(sets);
     let set = &sets[best];
-    let is_open = !set.forms_tried && set.assembly.effects().len() > 1 && leaves_more_than_noise(set, evidence);
+    let is_open = !set.forms_tried && !set.names().is_empty() && leaves_more_than_noise(set, evidence);
     is_open.then_some(best)
 }
 

@@ -33,7 +33,8 @@ pub fn exchanges(set: &Set, sets: &[Set], evidence: &Evidence) -> Vec<Set> {
     open.into_par_iter().filter_map(exchanged).collect()
 }
 
-/// Fitted sets in which one named effect has another form. The best form alone need not be the best beside others.
+/// Fitted sets in which one named effect has another form. The best form alone need not be the best beside others, and the
+/// optimum of one form is a good start for another: a stop that stiffens, from one that does not.
 /// The first of `sets` is the base model.
 pub fn other_forms(set: &Set, sets: &[Set], evidence: &Evidence) -> Vec<Set> {
     let base = &sets[0].assembly;

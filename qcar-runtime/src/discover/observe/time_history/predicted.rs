@@ -191,7 +191,10 @@ fn between(signal: &[f64], place: f64) -> (f64, f64) {
 /// True samples of each input of a run, under these test conditions.
 fn driven<'a>(inputs: &'a Recordings, conditions: &TestConditions, run: usize) -> Vec<Cow<'a, [f64]>> {
     let of = |(input, (point, samples)): (usize, &'a (Point, Vec<f64>))| {
-        let (factor, zero) = (conditions.drive_of(run, input), zero(point, conditions.initial_states_of(run)));
+        let (factor, zero) = (
+            conditions.drive_of(run, input),
+            zero(point, conditions.initial_states_of(run)),
+        );
         if (factor, zero) == (1.0, 0.0) {
             Cow::Borrowed(samples.as_slice())
         } else {
