@@ -163,6 +163,8 @@ fn laws_apply_at_whatever_has_such_a_term() {
     );
     assert_eq!(places("tire_law"), ["tire"]);
     assert_eq!(places("time_law"), ["damper"]);
+    assert_eq!(places("ground_law"), [""; 0]);
+    assert_eq!(law("ground_law").places(&self::model("one_mass")), ["body"]);
 }
 
 /// At one moment only a combination of its coefficients is seen: time has to go on for all of them.
@@ -315,7 +317,8 @@ fn an_effect_is_tried_in_each_form_that_the_model_allows() {
     };
     let and_smooth = |forms: &[&str]| -> Vec<Option<String>> {
         let smooth = forms.iter().map(|form| Some(format!("smooth_{form}")));
-        forms.iter().map(|form| Some(form.to_string())).chain(smooth).collect()
+        let all = forms.iter().map(|form| Some(form.to_string())).chain(smooth);
+        all.chain([Some("gradual_in_damper".into())]).collect()
     };
     let (inside, across, beside) = ("in_damper", "across_strut", "between_wheel_and_body");
     assert_eq!(forms("axle_c"), and_smooth(&[inside, across, beside]));

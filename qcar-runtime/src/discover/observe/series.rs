@@ -1,7 +1,10 @@
 //! Values of one sensor in one run.
 
+use std::ops::Range;
+
 use nalgebra::Complex;
 
+use crate::random::SplitMix;
 use crate::transmissibility::Point;
 
 /// Smallest noise of a value relative to the signal: that of a 12-bit converter.
@@ -95,9 +98,9 @@ impl Series {
         std::f64::consts::PI * (power / slope.max(f64::MIN_POSITIVE)).sqrt()
     }
 
-    /// Keeps every `step`-th value.
+    /// Keeps one of each `step` values.
     pub fn thin(&mut self, step: usize) {
-        self.keep((0..self.at.len()).step_by(step));
+        self.keep(scattered(0..self.at.len(), step).into_iter());
     }
 
     pub(super) fn keep(&mut self, places: impl Iterator<Item = usize> + Clone) {
@@ -111,6 +114,16 @@ impl Series {
     pub fn residuals(&self) -> usize {
         self.value.len() * self.kind.parts()
     }
+}
+
+/// One place in each `step` of a range, at random and always the same. At even steps, a motion that is too fast for them
+/// would look like a slow one, and a fit could explain a slow one by it.
+pub(super) fn scattered(range: Range<usize>, step: usize) -> Vec<usize> {
+    let mut random = SplitMix::new(step as u64);
+    let blocks = range.clone().step_by(step);
+    blocks
+        .map(|first| first + random.below(step.min(range.end - first)))
+        .collect()
 }
 
 /// Position of the abscissa nearest to `wanted`. They increase, and there is at least one.

@@ -1,15 +1,12 @@
 //! Reads a time history: sample-by-sample responses.
 
-use std::iter::StepBy;
-use std::ops::Range;
-
 use nalgebra::Complex;
 
 use super::noise::noise;
 use super::restarts::{drifts, restarts};
 use crate::campaign::{Campaign, History, Recording};
 use crate::discover::observe::sensor::sensors;
-use crate::discover::observe::series::LEAST_NOISE;
+use crate::discover::observe::series::{LEAST_NOISE, scattered};
 use crate::discover::observe::{Band, Evidence, Kind, Recordings, Run, Series, Spread, Stimulus, excitation_of};
 use crate::error::{InputError, Place, Problem};
 use crate::mean::deviation;
@@ -133,7 +130,7 @@ struct Part {
     band: Option<Band>,
     periodic: bool,
     /// Samples of the values, before the series is thinned.
-    inside: StepBy<Range<usize>>,
+    inside: Vec<usize>,
 }
 
 impl Part {
@@ -165,7 +162,7 @@ impl Part {
         let filtered = self.band.as_ref().map(|band| band.of(samples, self.periodic));
         let samples = filtered.as_deref().unwrap_or(samples);
         let noise = self.band.as_ref().map_or(1.0, Band::of_noise) * noise;
-        let at: Vec<f64> = self.inside.clone().map(|k| self.start + k as f64 / self.rate).collect();
+        let at: Vec<f64> = self.inside.iter().map(|&k| self.start + k as f64 / self.rate).collect();
         let mut series = Series {
             run,
             sensor: sensor.clone(),
@@ -174,7 +171,7 @@ impl Part {
             noise: vec![noise.hypot(LEAST_NOISE * deviation(samples)); at.len()],
             least_discrepancy: FLOOR,
             at,
-            value: self.inside.clone().map(|k| Complex::from(samples[k])).collect(),
+            value: self.inside.iter().map(|&k| Complex::from(samples[k])).collect(),
         };
         let step = (series.at[series.at.len() - 1] - series.at[0]) / series.at.len() as f64;
         let usual = (series.half_a_period() / (IN_HALF_A_PERIOD * step)) as usize;
@@ -183,11 +180,11 @@ impl Part {
     }
 }
 
-/// Evenly spaced samples of a record without `cut` samples at each end; `None` if too few are left.
-fn inside(samples: usize, cut: usize, stride: usize) -> Option<StepBy<Range<usize>>> {
+/// One in each so many samples of a record without `cut` samples at each end; `None` if too few are left.
+fn inside(samples: usize, cut: usize, stride: usize) -> Option<Vec<usize>> {
     const FEWEST: usize = 20;
     let left = samples.saturating_sub(2 * cut);
-    let inside = (cut..cut + left).step_by(left.div_ceil(MOST_VALUES).max(stride));
+    let inside = scattered(cut..cut + left, left.div_ceil(MOST_VALUES).max(stride));
     (inside.len() >= FEWEST).then_some(inside)
 }
 
