@@ -11,6 +11,8 @@ use serde::Serialize;
 pub(crate) struct SensorResidual {
     /// The sensor.
     pub channel: String,
+    /// What it measures.
+    pub quantity: &'static str,
     /// Kind of its values.
     pub kind: &'static str,
     /// RMS of the residual over RMS of the measured signal, percent, before.
@@ -42,6 +44,7 @@ pub(crate) fn left(evidence: &Evidence, [before, after]: [&Explanation; 2]) -> V
     let [before, after] = [before, after].map(|of| of.misfit.sensor_shares(evidence, evidence.judging()));
     let left = |(before, after): (SensorShare, SensorShare)| SensorResidual {
         channel: channel(before.sensor),
+        quantity: before.sensor.quantity.name(),
         kind: word(before.kind),
         before_percent: 100.0 * before.missed(),
         after_percent: 100.0 * after.missed(),

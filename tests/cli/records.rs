@@ -495,7 +495,7 @@ fn an_offset_is_told_and_counted_once() {
     assert!(
         answer["notices"]
             .to_string()
-            .contains("`f_offset` of the model is the offset of this sensor"),
+            .contains("the parameter `f_offset` acts like an offset of this sensor"),
         "{answer}"
     );
 }

@@ -1,6 +1,6 @@
 //! The curves of an effect: the tables in its laws, and which of its parameters are points of them.
 
-use crate::front::syntax::{Change, Effect, Expression, ExpressionKind, LawStatement, Operator, Table};
+use crate::front::syntax::{Change, Effect, Expression, ExpressionKind, LawStatement, Operator, Statement, Table};
 
 /// A table in a law.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,6 +35,7 @@ impl Curve {
 pub fn curves(effect: &Effect) -> Vec<Curve> {
     let laws = effect.changes().flat_map(|change| match change {
         Change::Add(_, law) | Change::ReplaceTerm(_, _, law) => law.as_slice(),
+        Change::Declare(Statement::Link(link)) => link.body.as_slice(),
         _ => &[],
     });
     let mut found = Vec::new();

@@ -16,12 +16,18 @@ pub(super) fn of_sensors(discovery: &Discovery, evidence: &Evidence) -> Vec<Stri
         .collect()
 }
 
-/// A sentence for each sensor of a record without an offset of its own, because a parameter or state of the model acts
-/// as one.
+/// A sentence for each sensor of a record without an offset of its own, because a parameter or an initial state of the
+/// model acts as one.
 fn offsets_of_the_model(discovery: &Discovery) -> impl Iterator<Item = String> {
     let without = &discovery.after.refit.nuisance.without_offset;
     without.iter().map(|(sensor, own)| {
-        format!("{sensor}: `{own}` of the model is the offset of this sensor, so no other offset is estimated for it")
+        let is_parameter = discovery.after.named.iter().any(|(name, _)| name == own);
+        let what = if is_parameter {
+            "the parameter"
+        } else {
+            "the initial value of"
+        };
+        format!("{sensor}: {what} `{own}` acts like an offset of this sensor, so no other offset is estimated for it")
     })
 }
 

@@ -14,7 +14,7 @@ use super::nuisances;
 use super::places::{PlaceStiffness, missing};
 use super::verdict::{choice, sentence};
 use crate::effects;
-use crate::sensor_residuals::{channel, left};
+use crate::sensor_residuals::{SensorResidual, channel, left};
 use crate::table::{Table, noted, number, or_dash};
 use crate::units;
 
@@ -115,9 +115,15 @@ fn candidates(of: &Answer) -> String {
 fn remaining(of: &Answer) -> String {
     let (column, last) = last(of);
     let mut table = Table::new(["residual_in_%_of_signal", "run", "before", column]);
-    for own in left(&of.evidence, [&of.discovery.before, last]) {
+    let left = left(&of.evidence, [&of.discovery.before, last]);
+    for own in &left {
+        let is_alike = |other: &&SensorResidual| (&other.channel, other.kind) == (&own.channel, own.kind);
+        let sensor = match left.iter().filter(is_alike).count() {
+            1 => own.channel.clone(),
+            _ => format!("{} {}", own.channel, own.quantity),
+        };
         let (before, after) = (number(own.before_percent, 3), number(own.after_percent, 3));
-        table.row(vec![own.channel, own.kind.into(), before, after]);
+        table.row(vec![sensor, own.kind.into(), before, after]);
     }
     format!("\n{}", table.text())
 }
