@@ -35,7 +35,8 @@ fn forms_that_come_to_the_same_are_tried_once() {
     let (inside, across, beside) = ("in_damper", "across_strut", "between_wheel_and_body");
     let of = |forms: &[&str]| -> Vec<String> {
         let smooth = forms.iter().map(|form| format!("smooth_{form}"));
-        forms.iter().map(|form| form.to_string()).chain(smooth).collect()
+        let all = forms.iter().map(|form| form.to_string()).chain(smooth);
+        all.chain(["gradual_in_damper".into()]).collect()
     };
     assert_eq!(forms("axle_c", "coulomb_friction"), of(&[inside, across]));
     assert_eq!(forms("axle_d", "coulomb_friction"), of(&[inside, across, beside]));
@@ -70,8 +71,10 @@ axle on_a_post {
         ("tire", "across_strut"),
         ("tire", "smooth_in_damper"),
         ("tire", "smooth_across_strut"),
+        ("tire", "gradual_in_damper"),
         ("damper", "in_damper"),
         ("damper", "smooth_in_damper"),
+        ("damper", "gradual_in_damper"),
     ];
     let expected = expected.map(|(at, form)| (at.to_string(), Some(form.to_string())));
     assert_eq!(candidates(model, "coulomb_friction"), expected);
@@ -97,13 +100,14 @@ fn stops_of_either_side_are_both_tried() {
 #[test]
 fn the_laws_of_a_damper_on_a_rig_are_all_tried() {
     for (effect, expected) in [
-        ("segmented_polynomial_damper", vec!["parabolas", "slopes"]),
+        ("segmented_polynomial_damper", vec!["parabolas", "slopes", "powers"]),
         ("digressive_damper", vec!["gradual", "blow_off", "two_slopes"]),
         (
             "bump_stop",
             vec![
                 "in_compression",
                 "progressive_in_compression",
+                "exponential_in_compression",
                 "in_rebound",
                 "both_ways",
             ],

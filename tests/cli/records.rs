@@ -433,6 +433,38 @@ fn with_stop(begin: [f64; 2]) -> Vec<f64> {
     samples
 }
 
+/// Most effects are laws of a travel, so none of them applies to a disc on a wire.
+#[test]
+fn where_a_stretch_is_an_angle_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = "axle turning {
+        param c_wire: N m s/rad = 0.02 in 1e-3..1; param k_wire: N m/rad = 7 in 1..20;
+        direction phi {
+            inertia disc = 0.02 kg m^2;
+            link wire: disc { spring k_wire; damper c_wire; }
+            point mark = 0.1 m * disc;
+            output mark.position;
+        }
+    }";
+    fs::write(folder.path().join("turning.axle"), model).unwrap();
+    let decay: Columns = &[("z", mass([0.02, 0.3], |_| 0.0))];
+    campaign(folder.path(), "turning.axle", "", "band_limited = false", &[decay]);
+    let manifest = folder.path().join("campaign.toml");
+    let text = fs::read_to_string(&manifest).unwrap();
+    let turned = text
+        .replace("\"body\"", "\"mark\"")
+        .replace("\"z\"\nquantity", "\"phi\"\nquantity");
+    let parameters = parameter("c_wire", 0.02, "N m s", "") + &parameter("k_wire", 7.0, "N m", "");
+    let turned = turned.replace(
+        "\n\n[[channel]]\nname = \"z\"",
+        &format!("\n\n{parameters}[[channel]]\nname = \"z\""),
+    );
+    fs::write(&manifest, turned).unwrap();
+    let answer = discovered(folder.path().to_str().unwrap());
+    let notices = answer["notices"].to_string();
+    assert!(notices.contains("the stretch of wire is an angle"), "{answer}");
+}
+
 /// Of a model that nothing excites, a free decay shows what it shows of others.
 #[test]
 fn effects_apply_to_a_model_without_inputs() {

@@ -40,7 +40,7 @@ mod exchange;
 mod ranges;
 // Learned laws for effects that the catalogue lacks.
 mod learn;
-// The strongest effect with a law of free form, instead of several effects.
+// Effects that only make up for the form of another's law.
 mod free_form;
 // The first learned law, before pairs and triples of effects are tried.
 mod first_law;
@@ -60,7 +60,7 @@ use exchange::{exchanges, other_forms};
 use extend::extensions;
 use fidelity::Fidelity;
 use first_law::FirstLaw;
-use free_form::with_free_form;
+use free_form::without_effects_of_form;
 use held_out::supported_part;
 use integration::AccuracyCheck;
 use law_or_names::compare_with_law;
@@ -220,9 +220,8 @@ fn attempt(mut sets: Vec<Set>, evidence: &Evidence, progress: Progress<'_>) -> R
         let others = exchanges(&sets[place], &sets, evidence);
         sets.extend(others);
     }
-    if let Some(own) = with_free_form(&sets, best(&sets), evidence, progress) {
-        keep_best(own, &mut sets);
-    }
+    let place = best(&sets);
+    sets = without_effects_of_form(sets, place, evidence, progress);
     for own in with_ranges_of_model(&sets, best(&sets), evidence) {
         keep_best(own, &mut sets);
     }
@@ -313,12 +312,19 @@ fn second(sets: &[Set]) -> Option<usize> {
 }
 
 /// The most probable set, if it has effects, leaves more than noise, and the other forms of its effects have not been
-/// tried yet.
+/// tried yet; or else the most probable set with another single effect, if that explains nearly all of the excess residual.
 fn with_untried_forms(sets: &[Set], evidence: &Evidence) -> Option<usize> {
     let best = best(sets);
-    let set = &sets[best];
-    let is_open = !set.forms_tried && !set.names().is_empty() && leaves_more_than_noise(set, evidence);
-    is_open.then_some(best)
+    let has_effects = !sets[best].names().is_empty();
+    if !has_effects || !leaves_more_than_noise(&sets[best], evidence) {
+        return None;
+    }
+    let is_rival = |place: &usize| sets[*place].names().len() == 1 && sets[*place].names() != sets[best].names();
+    let rival = most_probable(sets, (0..sets.len()).filter(is_rival));
+    let explains =
+        |place: &usize| explained_share(&sets[best_base(sets)], &sets[*place], evidence) >= evidence.numbers.certain();
+    let open = std::iter::once(best).chain(rival.filter(explains));
+    open.into_iter().find(|&place| !sets[place].forms_tried)
 }
 
 /// Fits the most probable set again from the smallest discrepancy, with those of the same effects in other forms, if

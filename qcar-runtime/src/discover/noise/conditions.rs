@@ -99,14 +99,14 @@ impl Nuisance {
     fn delay_factors(&self, evidence: &Evidence, series: &Series) -> Vec<(usize, f64)> {
         let prior = || self.coefficient(&series.sensor, Form::Delay).map(|k| (k, 1.0));
         let suspects = |sensor, factor| self.suspected(sensor, Form::Delay).map(move |k| (k, factor));
-        let own = || prior().into_iter().chain(suspects(&series.sensor, 1.0));
         match (series.kind, &evidence.runs[series.run].stimulus) {
+            (Kind::Passage, _) => prior().into_iter().chain(suspects(&series.sensor, 1.0)).collect(),
             // Each of several inputs would need a shift of its own, so only a single input is shifted.
             (Kind::Time, Stimulus::History { inputs, .. }) if inputs.signals.len() == 1 => {
                 let input = suspects(&inputs.signals[0].0, -1.0);
-                own().chain(input).collect()
+                suspects(&series.sensor, 1.0).chain(input).collect()
             }
-            (Kind::Passage | Kind::Time, _) => own().collect(),
+            (Kind::Time, _) => suspects(&series.sensor, 1.0).collect(),
             (Kind::Harmonic(_) | Kind::Travel | Kind::Width | Kind::Speed | Kind::Cycle(_), _) => Vec::new(),
         }
     }

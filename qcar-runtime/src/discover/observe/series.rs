@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use nalgebra::Complex;
 
+use crate::campaign::Role;
 use crate::random::SplitMix;
 use crate::transmissibility::Point;
 
@@ -99,8 +100,8 @@ impl Series {
     }
 
     /// Keeps one of each `step` values.
-    pub fn thin(&mut self, step: usize) {
-        self.keep(scattered(0..self.at.len(), step).into_iter());
+    pub(super) fn thin(&mut self, step: usize, choice: Choice) {
+        self.keep(choice.of(0..self.at.len(), step).into_iter());
     }
 
     pub(super) fn keep(&mut self, places: impl Iterator<Item = usize> + Clone) {
@@ -116,14 +117,34 @@ impl Series {
     }
 }
 
-/// One place in each `step` of a range, at random and always the same. At even steps, a motion that is too fast for them
-/// would look like a slow one, and a fit could explain a slow one by it.
-pub(super) fn scattered(range: Range<usize>, step: usize) -> Vec<usize> {
-    let mut random = SplitMix::new(step as u64);
-    let blocks = range.clone().step_by(step);
-    blocks
-        .map(|first| first + random.below(step.min(range.end - first)))
-        .collect()
+/// Which one of so many samples is compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Choice {
+    /// The first, in the fitted runs.
+    Even,
+    /// One at random, always the same, in the held-out runs. At even steps a motion that is too fast for them looks like a
+    /// slow one, and a fit may explain a slow one by it. At random ones it is seen as what it is.
+    Scattered,
+}
+
+impl Choice {
+    /// The choice for the runs of a role.
+    pub fn for_role(role: Role) -> Self {
+        match role {
+            Role::Fit => Choice::Even,
+            Role::HeldOut => Choice::Scattered,
+        }
+    }
+
+    /// A place in each `step` of a range.
+    pub fn of(self, range: Range<usize>, step: usize) -> Vec<usize> {
+        let mut random = SplitMix::new(step as u64);
+        let mut one = |first: usize| match self {
+            Choice::Even => first,
+            Choice::Scattered => first + random.below(step.min(range.end - first)),
+        };
+        range.clone().step_by(step).map(&mut one).collect()
+    }
 }
 
 /// Position of the abscissa nearest to `wanted`. They increase, and there is at least one.

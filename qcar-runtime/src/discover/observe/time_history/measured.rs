@@ -6,7 +6,7 @@ use super::noise::noise;
 use super::restarts::{drifts, restarts};
 use crate::campaign::{Campaign, History, Recording};
 use crate::discover::observe::sensor::sensors;
-use crate::discover::observe::series::{LEAST_NOISE, scattered};
+use crate::discover::observe::series::{Choice, LEAST_NOISE};
 use crate::discover::observe::{Band, Evidence, Kind, Recordings, Run, Series, Spread, Stimulus, excitation_of};
 use crate::error::{InputError, Place, Problem};
 use crate::mean::deviation;
@@ -44,7 +44,7 @@ impl Evidence {
         if periodic {
             check_periodic(about, campaign, run, inputs.is_empty())?;
         }
-        let part = Part::of(&history, recording, !inputs.is_empty())?;
+        let part = Part::of(&history, recording, !inputs.is_empty(), Choice::for_role(run.role))?;
         let (place, rate) = (self.runs.len(), history.sample_rate);
         let driven: Vec<&[f64]> = inputs.iter().map(|(_, samples)| samples.as_slice()).collect();
         let noises = responses.iter().map(|(_, samples)| noise(samples, &driven, periodic));
@@ -131,12 +131,13 @@ struct Part {
     periodic: bool,
     /// Samples of the values, before the series is thinned.
     inside: Vec<usize>,
+    choice: Choice,
 }
 
 impl Part {
     /// # Errors
     /// Fails if the record is too short.
-    fn of(history: &History, recording: &Recording, is_driven: bool) -> Result<Self, InputError> {
+    fn of(history: &History, recording: &Recording, is_driven: bool, choice: Choice) -> Result<Self, InputError> {
         let (rate, periodic) = (history.sample_rate, recording.periodic);
         let band = recording.band.map(|band| Band::new(band, rate));
         let ends = if recording.band_limited && is_driven && !periodic {
@@ -147,13 +148,14 @@ impl Part {
         let reach = band.as_ref().filter(|_| !periodic).map_or(0, Band::half);
         let stride = band.as_ref().map_or(1, |band| band.stride(rate));
         let cut = reach.max((ends * history.len() as f64) as usize);
-        let inside = inside(history.len(), cut, stride).ok_or_else(|| too_short(history, recording, reach))?;
+        let inside = inside(history.len(), cut, stride, choice).ok_or_else(|| too_short(history, recording, reach))?;
         Ok(Self {
             start: history.start,
             rate,
             band,
             periodic,
             inside,
+            choice,
         })
     }
 
@@ -175,16 +177,17 @@ impl Part {
         };
         let step = (series.at[series.at.len() - 1] - series.at[0]) / series.at.len() as f64;
         let usual = (series.half_a_period() / (IN_HALF_A_PERIOD * step)) as usize;
-        series.thin(usual.min(series.at.len() / fewest.max(1)).max(1));
+        let step = usual.min(series.at.len() / fewest.max(1)).max(1);
+        series.thin(step, self.choice);
         series
     }
 }
 
 /// One in each so many samples of a record without `cut` samples at each end; `None` if too few are left.
-fn inside(samples: usize, cut: usize, stride: usize) -> Option<Vec<usize>> {
+fn inside(samples: usize, cut: usize, stride: usize, choice: Choice) -> Option<Vec<usize>> {
     const FEWEST: usize = 20;
     let left = samples.saturating_sub(2 * cut);
-    let inside = scattered(cut..cut + left, left.div_ceil(MOST_VALUES).max(stride));
+    let inside = choice.of(cut..cut + left, left.div_ceil(MOST_VALUES).max(stride));
     (inside.len() >= FEWEST).then_some(inside)
 }
 
