@@ -298,7 +298,7 @@ fn an_effect_vanishes_with_its_strength() {
     let without_strength: Vec<&String> = all.difference(&vanishing).collect();
     assert_eq!(
         without_strength,
-        ["offset_force", "subframe"],
+        ["offset_force", "spring_to_ground", "subframe"],
         "these vanish nowhere, or apply nowhere"
     );
 }
@@ -320,6 +320,8 @@ const NOTHING: [Case; 3] = [
             ("q_compression", 0.0),
             ("v_knee", 0.1),
             ("slope_beyond", 1.0),
+            ("v_open", 0.1),
+            ("exponent", 1.0),
         ],
     ),
     (
