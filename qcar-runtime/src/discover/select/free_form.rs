@@ -6,7 +6,7 @@
 
 use super::extend::SearchStart;
 use super::learn::most_probable_law;
-use super::set::{Set, best_base, by_log_posterior, explained_share};
+use super::set::{Set, best_base, by_log_posterior, explained_share, is_part};
 use super::{Progress, Update};
 use crate::discover::candidate::Candidate;
 use crate::discover::observe::Evidence;
@@ -21,25 +21,16 @@ pub fn without_effects_of_form(sets: Vec<Set>, best: usize, evidence: &Evidence,
     if with_law.is_none_or(|own| own.log_posterior() <= sets[best].log_posterior()) {
         return sets;
     }
-    let name = first
-        .names()
-        .first()
-        .map(|&(effect, at)| (effect.to_owned(), at.to_owned()));
-    let has_it = |set: &Set| {
-        set.names()
-            .iter()
-            .any(|&(effect, at)| name == Some((effect.into(), at.into())))
-    };
-    let is_left = |set: &Set| set.names().len() < 2 || !has_it(set);
-    sets.into_iter().filter(is_left).collect()
+    let is_left = |set: &&Set| set.names().len() < 2 || !is_part(first, set);
+    sets.iter().filter(is_left).cloned().collect()
 }
 
 /// The most probable set with a single effect of those of the set at `best`; `None` if that has one, or if the single one
 /// does not explain most of the excess residual.
 fn first_effect<'s>(sets: &'s [Set], best: usize, evidence: &Evidence) -> Option<&'s Set> {
     let names = sets[best].names();
-    let is_part = |own: &&Set| matches!(own.names()[..], [name] if names.contains(&name));
-    let first = sets.iter().filter(is_part).max_by(|a, b| by_log_posterior(a, b))?;
+    let is_one = |own: &&Set| matches!(own.names()[..], [name] if names.contains(&name));
+    let first = sets.iter().filter(is_one).max_by(|a, b| by_log_posterior(a, b))?;
     let explained = explained_share(&sets[best_base(sets)], first, evidence);
     (names.len() > 1 && explained >= evidence.numbers.explained()).then_some(first)
 }
