@@ -139,11 +139,11 @@ impl Choice {
     /// A place in each `step` of a range.
     pub fn of(self, range: Range<usize>, step: usize) -> Vec<usize> {
         let mut random = SplitMix::new(step as u64);
-        let mut one = |first: usize| match self {
+        let one = |first: usize| match self {
             Choice::Even => first,
             Choice::Scattered => first + random.below(step.min(range.end - first)),
         };
-        range.clone().step_by(step).map(&mut one).collect()
+        range.clone().step_by(step).map(one).collect()
     }
 }
 
