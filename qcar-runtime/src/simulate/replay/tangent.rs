@@ -1,8 +1,8 @@
 //! Derivatives of the signals of a replay by parameters, inputs and initial states, integrated with the motion.
 //!
 //! Each stage of the Runge-Kutta method is differentiated with the model's own Jacobians: `K = A S + ∂f/∂p`, `A S +
-//! B u` for the log amplitude of an input, or `A S + B` for its zero. So the result is the derivative of the computed motion itself, whatever the
-//! length of its steps. At a kink of a law the stage decides which side counts; forces are continuous there, so the
+//! B u` for the log amplitude of an input, or `A S + B` for its zero. So the result is the derivative of the computed
+//! motion itself, whatever the length of its steps. At a kink of a law the stage decides which side counts; forces are continuous there, so the
 //! sensitivities do not jump. Where a state decays within a step, its derivatives follow the exponential method of
 //! [`decay`](super::decay), even if the motion does not: it may rest there, but its derivatives would grow.
 //!
