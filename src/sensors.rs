@@ -16,7 +16,7 @@ pub fn unknown(about: &About, campaign: &Campaign) -> Vec<String> {
     let say = |own: &Channel| {
         let (location, quantity, axis) = (&own.location, own.quantity.name(), own.axis.name());
         let (channel, model) = (&own.name, &about.name);
-        let point = Point::new(location, own.axis.clone(), own.quantity);
+        let point = Point::of(own);
         let remedy = match nearest_place(about, &point) {
             Some(nearest) => format!("did you mean `{nearest}`?"),
             None => format!(
@@ -40,33 +40,41 @@ pub fn of_other_units(about: &About, campaign: &Campaign) -> Vec<Problem> {
         .iter()
         .filter_map(|own| Some((own, in_other_unit(about, own)?)));
     wrong
-        .map(|(own, output)| {
+        .map(|(own, (output, unit_of_model))| {
             let place = Place::Name(format!("channel {}", own.name));
-            let (quantity, unit) = (own.quantity.name(), own.quantity.unit());
+            let (quantity, unit) = (own.quantity.name(), own.unit());
             let found = format!("the {quantity} of `{}` in {unit}", own.location);
             let expected = format!(
                 "one in {}, the unit of its output `{}` in model `{}`",
                 output.unit, output.name, about.name
             );
-            let remedy =
-                "remove the channel; to compare it, give the model a point at the place of the sensor, with an output";
+            let other = own.quantity.unit_of(!own.turns);
+            let may_turn = if dimension(other) == Some(unit_of_model) {
+                format!("write `unit = \"{other}\"` if the sensor measures that; otherwise ")
+            } else {
+                String::new()
+            };
+            let remedy = format!(
+                "{may_turn}remove the channel; to compare it, give the model a point at the place of the sensor, with an output"
+            );
             Problem::new(campaign.manifest(), place, found, expected, remedy)
         })
         .collect()
 }
 
-/// The output of the model for a sensor, if their units are not of one kind.
-fn in_other_unit<'a>(about: &'a About, own: &Channel) -> Option<&'a Output> {
+/// The output of the model for a sensor, and the dimension of what the sensor should measure, if its unit is of another.
+fn in_other_unit<'a>(about: &'a About, own: &Channel) -> Option<(&'a Output, [i32; 3])> {
     let (place, power) = points(own).find_map(|point| output_of(about, &signal_of(about, &point)).ok())?;
     let output = &about.outputs[place];
     let [mass, length, time] = dimension(&output.unit)?;
     // Each derivative divides by a second.
-    (dimension(own.quantity.unit()) != Some([mass, length, time - power])).then_some(output)
+    let of_model = [mass, length, time - power];
+    (dimension(own.unit()) != Some(of_model)).then_some((output, of_model))
 }
 
 /// The sensor as the mean of its place, and at each end of it.
 fn points(own: &Channel) -> impl Iterator<Item = Point> {
-    let mean = Point::new(&own.location, own.axis.clone(), own.quantity);
+    let mean = Point::of(own);
     let ends = [Side::Front, Side::Rear].map(|end| mean.on(end));
     std::iter::once(mean).chain(ends)
 }

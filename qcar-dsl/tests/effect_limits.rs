@@ -896,3 +896,89 @@ fn a_belt_leaves_the_static_curve_of_the_tyre() {
         assert!((in_series / 230e3 - 1.0).abs() < 1e-6, "{form}: {in_series}");
     }
 }
+
+/// Two parts on a shaft or spring, to ground by a bearing or guide. `{kg}` and others are units.
+const TWO_PARTS: &str = "axle two_parts {
+    known param m_1: {kg} = 10 in 1..100; known param m_2: {kg} = 30 in 1..100;
+    param k: {N/m} = 2e4 in 100..1e6; param c: {N s/m} = 100 in 1..1e4; param c_b: {N s/m} = 20 in 1..1e4;
+    direction z {
+        {mass} one = m_1; {mass} two = m_2;
+        force push on one;
+        link shaft: two - one { spring k; damper c; }
+        link bearing: two { damper c_b; }
+        output one.acceleration; output two.acceleration;
+    }
+}";
+
+fn two_parts(units: [(&str, &str); 4]) -> Checked {
+    let text = units.iter().fold(TWO_PARTS.to_string(), |text, (key, unit)| {
+        text.replace(&format!("{{{key}}}"), unit)
+    });
+    let name = "two_parts.axle".to_string();
+    check_text(Source { name, text }, &|_, path| Err(format!("no {path}"))).unwrap_or_else(|report| panic!("{report}"))
+}
+
+/// A part that turns obeys the laws of one that moves, in other units: every effect has the same places, forms,
+/// parameters and equations.
+#[test]
+fn effects_on_angles_are_those_on_lengths() {
+    let moves = two_parts([("kg", "kg"), ("N/m", "N/m"), ("N s/m", "N s/m"), ("mass", "mass")]);
+    let turns = two_parts([
+        ("kg", "kg m^2"),
+        ("N/m", "N m/rad"),
+        ("N s/m", "N m s/rad"),
+        ("mass", "inertia"),
+    ]);
+    let laws = std::fs::read_dir(models().join("laws")).unwrap();
+    let laws = laws.map(|entry| Patch::read(read(&entry.unwrap().path())).unwrap());
+    let mut places = BTreeSet::new();
+    for patch in effects().into_iter().chain(laws) {
+        let [moving, turning] = [&moves, &turns].map(|model| patch.candidates(model, &|_| None));
+        let labels = |all: &[Patched]| -> Vec<_> {
+            let label = |own: &Patched| (own.effect.clone(), own.place.clone(), own.form.clone());
+            all.iter().map(label).collect()
+        };
+        assert_eq!(labels(&moving), labels(&turning));
+        for (moving, turning) in moving.iter().zip(&turning) {
+            places.insert((moving.effect.clone(), moving.place.clone()));
+            let (name, of) = (&moving.model.name, |own: &NewParameter| {
+                (own.name.clone(), own.start, own.range)
+            });
+            let [own, other] = [moving, turning].map(|own| own.parameters.iter().map(of).collect::<Vec<_>>());
+            assert_eq!(own, other, "{name}");
+            assert_eq!(rates_at_starts(moving), rates_at_starts(turning), "{name}");
+        }
+    }
+    for (effect, place) in [
+        ("coulomb_friction", "bearing"),
+        ("progressive_spring", "shaft"),
+        ("suspended_mass", "two"),
+        ("spring_to_ground", "one"),
+        ("elastic_law", "shaft"),
+        ("drag_law", "one"),
+    ] {
+        assert!(
+            places.contains(&(effect.into(), place.into())),
+            "{effect} at {place}: {places:?}"
+        );
+    }
+}
+
+/// The rates of a patched model at the starts of its parameters, in a motion that its names give.
+fn rates_at_starts(of: &Patched) -> Vec<(String, f64)> {
+    let starts = of.model.parameters.iter().map(|own| {
+        let new = of.parameters.iter().find(|new| new.name == own.name);
+        let default = match own.default {
+            qcar_dsl::model::Default::Value(value) => Some(value),
+            _ => None,
+        };
+        let start = new.map(|new| new.start).or(default);
+        (
+            own.name.as_str(),
+            start.unwrap_or_else(|| panic!("no value of {}", own.name)),
+        )
+    });
+    let letters = |name: &str| name.bytes().map(u32::from).sum::<u32>();
+    let moving = |name: &str| 0.01 * (f64::from(letters(name) % 13) - 6.0);
+    Running::new(&of.model, &starts.collect::<Vec<_>>()).rates(&moving, false)
+}

@@ -42,18 +42,35 @@ pub struct Point {
     pub quantity: Quantity,
     /// Side of the location whose sensors these are; `None` for the mean of all sensors there.
     pub side: Option<Side>,
+    /// True if the location turns about the axis.
+    pub turns: bool,
 }
 
 impl Point {
-    /// The mean of all sensors of a place.
+    /// The mean of all sensors of a place that moves along the axis.
     pub fn new(location: &str, axis: Axis, quantity: Quantity) -> Self {
-        let (location, side) = (location.to_owned(), None);
+        let (location, side, turns) = (location.to_owned(), None, false);
         Point {
             location,
             axis,
             quantity,
             side,
+            turns,
         }
+    }
+
+    /// The mean of all sensors like this one.
+    pub fn of(sensor: &Channel) -> Self {
+        let turns = sensor.turns;
+        Point {
+            turns,
+            ..Point::new(&sensor.location, sensor.axis.clone(), sensor.quantity)
+        }
+    }
+
+    /// The SI unit of its signal.
+    pub fn unit(&self) -> &'static str {
+        self.quantity.unit_of(self.turns)
     }
 
     /// The kind of the model's signal here: a displacement is the stretch of a link of this name, or a position.
@@ -185,7 +202,7 @@ pub struct Transmissibility {
 pub fn points(history: &History) -> Vec<Point> {
     let mut points = Vec::new();
     for (channel, _) in &history.signals {
-        let point = Point::new(&channel.location, channel.axis.clone(), channel.quantity);
+        let point = Point::of(channel);
         if !points.contains(&point) {
             points.push(point);
         }

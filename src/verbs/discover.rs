@@ -282,7 +282,6 @@ pub(crate) fn answer(
     let of_sensors = notices::of_sensors(&discovery, &evidence);
     evidence.notices.extend(of_sensors);
     evidence.notices.extend(notices::on_ranges(&discovery, campaign));
-    evidence.notices.extend(notices::on_angles(bench.checked()));
     evidence.notices.extend(outside);
     // Without sweeps that the model can be compared with, there are no places.
     let [before, after] = [0, 1].map(|of| with_nuisances(bench.clone(), &discovery.nuisances[of]));

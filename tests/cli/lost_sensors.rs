@@ -149,6 +149,7 @@ fn an_angle_is_no_displacement() {
             "campaign.toml, `channel z`",
             "`pitch` in m/s^2",
             "1/s^2",
+            "write `unit = \"rad/s^2\"`",
             "remove the channel",
         ];
         refused(&qcar(&[verb, path]), &said);
@@ -177,7 +178,11 @@ fn an_imported_angle_is_no_sensor() {
         ("pitch_acc_z", "m/s^2", "is an angle in the model"),
         ("pitch_z", "V", "is an angle in the model"),
     ];
-    let sensors = [("pad_z", "m/s^2"), ("body_roll_centre_z", "m/s^2")];
+    let sensors = [
+        ("pad_z", "m/s^2"),
+        ("body_roll_centre_z", "m/s^2"),
+        ("pitch_rate", "deg/s"),
+    ];
     let channels = angles.iter().map(|(name, unit, _)| (*name, *unit)).chain(sensors);
     let headings: Vec<String> = channels
         .map(|(name, unit)| format!("{name} [{unit}]").replace(" []", ""))
@@ -201,6 +206,10 @@ fn an_imported_angle_is_no_sensor() {
         .lines()
         .filter_map(|line| line.strip_prefix("location = "))
         .collect();
-    assert_eq!(known, ["\"pad\"", "\"body\""]);
+    assert_eq!(known, ["\"pad\"", "\"body\"", "\"pitch\""]);
+    assert!(
+        text.contains("quantity = \"velocity\"\nsource = \"pitch_rate\"\nunit = \"deg/s\"\n"),
+        "{text}"
+    );
     assert!(text.contains("# location = \"pad\" # of pad, body\n"), "{text}");
 }

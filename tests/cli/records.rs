@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::common::{qcar, succeeds};
+use crate::common::{qcar, refused, succeeds};
 
 /// Samples of every record, and their rate in Hz.
 const SAMPLES: usize = 2000;
@@ -433,36 +433,89 @@ fn with_stop(begin: [f64; 2]) -> Vec<f64> {
     samples
 }
 
-/// Most effects are laws of a travel, so none of them applies to a disc on a wire.
+/// A disc on a shaft that a motor turns, with an encoder for its speed and dry friction in its bearing. Effects apply to
+/// an angle as to a travel.
 #[test]
-fn where_a_stretch_is_an_angle_is_told() {
+fn friction_of_a_part_that_turns_is_named() {
     let folder = tempfile::tempdir().unwrap();
-    let model = "axle turning {
-        param c_wire: N m s/rad = 0.02 in 1e-3..1; param k_wire: N m/rad = 7 in 1..20;
-        direction phi {
-            inertia disc = 0.02 kg m^2;
-            link wire: disc { spring k_wire; damper c_wire; }
-            point mark = 0.1 m * disc;
-            output mark.position;
-        }
-    }";
-    fs::write(folder.path().join("turning.axle"), model).unwrap();
-    let decay: Columns = &[("z", mass([0.02, 0.3], |_| 0.0))];
-    campaign(folder.path(), "turning.axle", "", "band_limited = false", &[decay]);
+    let path = folder.path().to_str().unwrap();
+    fs::write(folder.path().join("turning.axle"), DISC).unwrap();
+    let parameters = parameter("c_shaft", 0.05, "N m s/rad", "range = [0.001, 1.0]\n")
+        + &parameter("k_shaft", 7.0, "N m/rad", "range = [1.0, 20.0]\n");
+    let runs = [1.0, 1.6, 0.6].map(|level| {
+        let torque = |t: f64| 0.5 * level * push(t);
+        let given = (0..SAMPLES).map(|k| torque((k as f64 + 0.5) / RATE)).collect();
+        vec![("push", given), ("z [deg/s]", disc(torque))]
+    });
+    let runs: Vec<Columns> = runs.iter().map(Vec::as_slice).collect();
+    campaign(
+        folder.path(),
+        "turning.axle",
+        &parameters,
+        "band_limited = false",
+        &runs,
+    );
     let manifest = folder.path().join("campaign.toml");
     let text = fs::read_to_string(&manifest).unwrap();
     let turned = text
-        .replace("\"body\"", "\"mark\"")
-        .replace("\"z\"\nquantity", "\"phi\"\nquantity");
-    let parameters = parameter("c_wire", 0.02, "N m s", "") + &parameter("k_wire", 7.0, "N m", "");
-    let turned = turned.replace(
-        "\n\n[[channel]]\nname = \"z\"",
-        &format!("\n\n{parameters}[[channel]]\nname = \"z\""),
+        .replace("axis = \"z\"", "axis = \"phi\"")
+        .replace("\"f\"", "\"motor\"")
+        .replace("unit = \"N\"", "unit = \"N m\"")
+        .replace("\"body\"", "\"disc\"")
+        .replace("\"displacement\"\nunit = \"m\"", "\"velocity\"\nunit = \"rad/s\"");
+    fs::write(&manifest, &turned).unwrap();
+    let (found, answer) = discovered_into(&folder.path().join("out"), path);
+    assert_eq!(answer["verdict"], "found", "{found}");
+    let [friction] = &answer["effects"].as_array().unwrap()[..] else {
+        panic!("{found}");
+    };
+    assert_eq!(
+        (&friction["name"], &friction["at"]),
+        (&"coulomb_friction".into(), &"shaft".into()),
+        "{found}"
     );
-    fs::write(&manifest, turned).unwrap();
-    let answer = discovered(folder.path().to_str().unwrap());
-    let notices = answer["notices"].to_string();
-    assert!(notices.contains("the stretch of wire is an angle"), "{answer}");
+    let value = friction["parameters"]["f_coulomb"].as_f64().unwrap();
+    assert!((value / 0.12 - 1.0).abs() < 0.03, "{value}\n{found}");
+    assert!(
+        found.contains("N m") && answer["offsets"][0]["unit"] == "rad/s",
+        "{found}"
+    );
+    // What measures the angle in other units is refused with the unit that fits.
+    fs::write(&manifest, turned.replace("\"rad/s\"", "\"m/s\"")).unwrap();
+    refused(
+        &qcar(&["check", path]),
+        &["channel z", "m/s", "write `unit = \"rad/s\"`"],
+    );
+}
+
+const DISC: &str = "axle turning {
+    \"A disc on a shaft\"
+    param c_shaft: N m s/rad = 0.05 in 1e-3..1; param k_shaft: N m/rad = 7 in 1..20;
+    direction phi {
+        inertia disc = 0.02 kg m^2;
+        force motor on disc;
+        link shaft: disc { spring k_shaft; damper c_shaft; }
+        output disc.velocity;
+    }
+}
+";
+
+/// Speed of the disc in deg/s, by the semi-implicit Euler method in fine steps.
+fn disc(torque: impl Fn(f64) -> f64) -> Vec<f64> {
+    const FINER: usize = 400;
+    let h = 1.0 / (RATE * FINER as f64);
+    let [mut angle, mut speed] = [0.0; 2];
+    let mut samples = Vec::new();
+    for step in 0..SAMPLES * FINER {
+        if step % FINER == 0 {
+            samples.push(f64::to_degrees(speed));
+        }
+        let friction = 0.12 * (speed / 2e-3_f64).tanh();
+        let moment = torque(step as f64 * h) - 8.0 * angle - 0.03 * speed - friction;
+        speed += h * moment / 0.02;
+        angle += h * speed;
+    }
+    samples
 }
 
 /// Of a model that nothing excites, a free decay shows what it shows of others.

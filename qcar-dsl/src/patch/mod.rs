@@ -5,6 +5,8 @@
 
 // Syntax trees with names replaced.
 mod rewrite;
+// Effects where the motion is an angle.
+mod angle;
 // The syntax tree of the model that is patched.
 mod model_tree;
 // Values of expressions at the model's parameters.
@@ -306,7 +308,12 @@ impl Patch {
         values: Values,
     ) -> PatchResult<(ModelTree, Vec<NewParameter>, Vec<SignalChange>)> {
         self.form_fits(base, roles, place)?;
-        let mut patching = apply::apply(Bindings::new(base, roles, &self.effect, place))?;
+        let effect = if base.turns(&place.direction, &place.name) {
+            Cow::Owned(angle::of_angles(&self.effect))
+        } else {
+            Cow::Borrowed(&self.effect)
+        };
+        let mut patching = apply::apply(Bindings::new(base, roles, &effect, place))?;
         let mut asked = Vec::new();
         for (declared, name) in &patching.parameters {
             let expressions = start::expressions(declared).map(|e| patching.meaning(e));

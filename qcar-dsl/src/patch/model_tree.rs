@@ -6,6 +6,8 @@ use crate::front::syntax::{
     Axle, AxleKind, Coordinate, CoordinateKind, Direction, Element, Expression, ExpressionKind, File, Item,
     LawStatement, Link, Name, Operator, Parameter, Statement,
 };
+use crate::hash::HashSet;
+use crate::units::Unit;
 
 /// The tree of a plain axle.
 #[derive(Clone, Debug)]
@@ -14,6 +16,8 @@ pub struct ModelTree {
     pub axle: Axle,
     /// The elements that its laws use.
     elements: Vec<Element>,
+    /// The links and coordinates whose motion is an angle, with their directions.
+    angles: HashSet<(String, String)>,
 }
 
 impl ModelTree {
@@ -27,6 +31,7 @@ impl ModelTree {
                 body: vec![],
             },
             elements: vec![],
+            angles: angles(model),
         };
         for item in &model.tree().items {
             match item {
@@ -87,6 +92,12 @@ impl ModelTree {
     pub fn coordinate(&self, direction: &str, name: &str) -> Option<&Coordinate> {
         let name = self.pointed_at(direction, name);
         coordinates(self.direction(direction)?).find(|coordinate| coordinate.name.text == name)
+    }
+
+    /// True if the stretch of this link, or the motion of this coordinate or point, is an angle.
+    pub fn turns(&self, direction: &str, name: &str) -> bool {
+        let name = self.pointed_at(direction, name);
+        self.angles.contains(&(direction.to_string(), name))
     }
 
     /// The inertia of a mass, to be changed.
@@ -182,6 +193,16 @@ impl ModelTree {
             }
         }
     }
+}
+
+fn angles(model: &Checked) -> HashSet<(String, String)> {
+    let links = model.links.iter().filter(|link| link.unit == Unit::ONE);
+    let links = links.map(|link| (link.direction.0.clone(), link.name.clone()));
+    let coordinates = model.coordinates.iter().filter(|coordinate| coordinate.angle);
+    let coordinates = coordinates.map(|own| (own.direction.0.clone(), own.name.clone()));
+    let points = model.points.iter().filter(|point| point.angle);
+    let points = points.map(|point| (point.direction.0.clone(), point.name.clone()));
+    links.chain(coordinates).chain(points).collect()
 }
 
 /// The links of a direction.

@@ -7,12 +7,22 @@ use crate::front::syntax::{
 /// The replacement of a name; `None` keeps it.
 pub type Rename<'a, Mistake> = &'a mut dyn FnMut(&Dotted) -> Result<Option<Expression>, Mistake>;
 
+/// The replacement of a name or number; `None` keeps it.
+type Replace<'a, Mistake> = &'a mut dyn FnMut(&Expression) -> Result<Option<Expression>, Mistake>;
+
 /// An expression with its names replaced.
 pub fn expression<Mistake>(e: &Expression, rename: Rename<'_, Mistake>) -> Result<Expression, Mistake> {
-    let mut of = |part: &Expression| expression(part, rename);
+    leaves(e, &mut |leaf| match &leaf.kind {
+        ExpressionKind::Name(name) => rename(name),
+        _ => Ok(None),
+    })
+}
+
+/// An expression with its names and numbers replaced.
+pub fn leaves<Mistake>(e: &Expression, replace: Replace<'_, Mistake>) -> Result<Expression, Mistake> {
+    let mut of = |part: &Expression| leaves(part, replace);
     let kind = match &e.kind {
-        ExpressionKind::Name(name) => return Ok(rename(name)?.unwrap_or_else(|| e.clone())),
-        ExpressionKind::Number(number) => ExpressionKind::Number(number.clone()),
+        ExpressionKind::Name(_) | ExpressionKind::Number(_) => return Ok(replace(e)?.unwrap_or_else(|| e.clone())),
         ExpressionKind::Negative(a) => ExpressionKind::Negative(Box::new(of(a)?)),
         ExpressionKind::Binary(operator, a, b) => ExpressionKind::Binary(*operator, Box::new(of(a)?), Box::new(of(b)?)),
         ExpressionKind::Call(function, arguments) => {
@@ -28,24 +38,24 @@ pub fn expression<Mistake>(e: &Expression, rename: Rename<'_, Mistake>) -> Resul
             ExpressionKind::Table(Box::new(Table { x, knots, values }))
         }
         ExpressionKind::If(condition, then, otherwise) => {
-            let condition = logic(condition, rename)?;
-            let mut of = |part: &Expression| expression(part, rename);
+            let condition = logic(condition, replace)?;
+            let mut of = |part: &Expression| leaves(part, replace);
             ExpressionKind::If(Box::new(condition), Box::new(of(then)?), Box::new(of(otherwise)?))
         }
     };
     Ok(Expression { kind, span: e.span })
 }
 
-fn logic<Mistake>(of: &Logic<Comparison>, rename: Rename<'_, Mistake>) -> Result<Logic<Comparison>, Mistake> {
-    let mut boxed = |part: &Logic<Comparison>| Ok(Box::new(logic(part, rename)?));
+fn logic<Mistake>(of: &Logic<Comparison>, replace: Replace<'_, Mistake>) -> Result<Logic<Comparison>, Mistake> {
+    let mut boxed = |part: &Logic<Comparison>| Ok(Box::new(logic(part, replace)?));
     Ok(match of {
         Logic::Not(a) => Logic::Not(boxed(a)?),
         Logic::And(a, b) => Logic::And(boxed(a)?, boxed(b)?),
         Logic::Or(a, b) => Logic::Or(boxed(a)?, boxed(b)?),
         Logic::Test(test) => Logic::Test(Comparison {
-            left: expression(&test.left, rename)?,
+            left: leaves(&test.left, replace)?,
             order: test.order,
-            right: expression(&test.right, rename)?,
+            right: leaves(&test.right, replace)?,
         }),
     })
 }

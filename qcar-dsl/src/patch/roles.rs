@@ -9,7 +9,7 @@ use super::graph::{Graph, Joint};
 use super::model_tree::{ModelTree, coordinates, links};
 use super::query::{Values, numbers};
 use super::stretch::{levered, lower, upper};
-use crate::front::syntax::{CoordinateKind, Expression, LawStatement, Link};
+use crate::front::syntax::{Coordinate, CoordinateKind, Expression, LawStatement, Link};
 
 /// The words for links, as `role tire` has them.
 pub const OF_LINKS: [&str; 6] = ["tire", "suspension", "mount", "hanger", "pivot_mount", "wheel_bushing"];
@@ -199,15 +199,19 @@ impl Roles {
     }
 }
 
-/// The masses of every direction with their values, kg.
+/// The masses of every direction with their values, kg; in a direction where all parts turn, their inertias, kg m².
 struct Masses(Vec<(String, String, f64)>);
 
 impl Masses {
     fn of(base: &ModelTree, values: Values) -> Masses {
         let mut all = Vec::new();
         for direction in base.directions() {
+            let is_mass = |own: &&Coordinate| matches!(own.kind, CoordinateKind::Mass(_));
+            let has_masses = coordinates(direction).any(|own| is_mass(&own));
             for coordinate in coordinates(direction) {
-                if let CoordinateKind::Mass(mass) = &coordinate.kind {
+                if let CoordinateKind::Mass(mass) | CoordinateKind::Inertia(mass) = &coordinate.kind
+                    && (is_mass(&coordinate) || !has_masses)
+                {
                     all.push((direction.name.text.clone(), coordinate.name.text.clone(), mass.clone()));
                 }
             }

@@ -1,5 +1,6 @@
 //! Amplitudes of travel, speed and force at a place in a campaign: scales for the ranges of an effect.
 
+use super::angle;
 use crate::front::syntax::{Name, Number, Parameter, ParameterDefault, UnitFactor, UnitText};
 
 /// A reference value of a place: its largest amplitude in the runs of a campaign.
@@ -39,6 +40,13 @@ impl Scale {
         format!("{direction}.{place}.{}", self.word())
     }
 
+    /// The reference value of a name such as `z.damper.force_scale`, with the direction and the place.
+    pub fn of(name: &str) -> Option<(Scale, &str, &str)> {
+        let (owner, word) = name.rsplit_once('.')?;
+        let (direction, place) = owner.split_once('.')?;
+        Some((Scale::written(word)?, direction, place))
+    }
+
     /// A typical value of an axle on a rig, for a model without measurements, and its unit.
     fn usual(self) -> (f64, &'static [(&'static str, i32)]) {
         match self {
@@ -49,22 +57,24 @@ impl Scale {
         }
     }
 
-    /// The reference value of a place as a parameter of the model, for expressions that use it.
-    pub fn declaration(self, name: &str) -> Parameter {
+    /// The reference value of a place as a parameter of the model, for expressions that use it. If the motion of the place
+    /// `turns`, its unit is that of an angle.
+    pub fn declaration(self, name: &str, turns: bool) -> Parameter {
         let (value, factors) = self.usual();
         let factor = |&(symbol, numerator): &(&str, i32)| UnitFactor {
             symbol: Name::new(symbol),
             numerator,
             denominator: 1,
         };
+        let unit = UnitText {
+            factors: factors.iter().map(factor).collect(),
+            ..UnitText::default()
+        };
         Parameter {
             known: true,
             clock: false,
             name: Name::new(name),
-            unit: UnitText {
-                factors: factors.iter().map(factor).collect(),
-                ..UnitText::default()
-            },
+            unit: if turns { angle::unit(&unit) } else { unit },
             default: Some(ParameterDefault::Number(Number::new(value))),
             range: None,
             doc: String::new(),

@@ -98,7 +98,7 @@ pub fn set_known_defaults(tree: &mut ModelTree, asked: &[BoundParameter], values
 
 /// The model with each expression as a derived quantity, and with the parameters themselves for their units.
 fn with_expressions(base: &ModelTree, asked: &[BoundParameter]) -> (Model, Vec<Diagnostic>) {
-    let mut quantities: Vec<Statement> = scales(asked).into_iter().map(Statement::Parameter).collect();
+    let mut quantities: Vec<Statement> = scales(base, asked).into_iter().map(Statement::Parameter).collect();
     for one in asked {
         quantities.push(Statement::Parameter(Parameter {
             known: false,
@@ -116,14 +116,17 @@ fn with_expressions(base: &ModelTree, asked: &[BoundParameter]) -> (Model, Vec<D
 }
 
 /// The reference values that expressions use.
-fn scales(asked: &[BoundParameter]) -> Vec<Parameter> {
+fn scales(base: &ModelTree, asked: &[BoundParameter]) -> Vec<Parameter> {
     let mut found: Vec<Parameter> = Vec::new();
     for e in asked.iter().flat_map(|one| &one.expressions) {
         names_in(e, &mut |name| {
             let [name] = name.names.as_slice() else { return };
-            let scale = name.text.rsplit_once('.').and_then(|(_, word)| Scale::written(word));
-            let known = found.iter().any(|own| own.name.text == name.text);
-            found.extend(scale.filter(|_| !known).map(|scale| scale.declaration(&name.text)));
+            let Some((scale, direction, place)) = Scale::of(&name.text) else {
+                return;
+            };
+            if found.iter().all(|own| own.name.text != name.text) {
+                found.push(scale.declaration(&name.text, base.turns(direction, place)));
+            }
         });
     }
     found

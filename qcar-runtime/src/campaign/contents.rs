@@ -116,6 +116,8 @@ pub struct Channel {
     pub axis: Axis,
     /// Measured quantity; values are in its SI unit.
     pub quantity: Quantity,
+    /// True if the location turns: the quantity is an angle, its rate or acceleration, or a moment.
+    pub turns: bool,
 }
 
 /// The channel of a measured file that is a sensor or a column of a curve, and its conversion to SI.
@@ -371,6 +373,13 @@ impl Test {
     }
 }
 
+impl Channel {
+    /// The SI unit of its values.
+    pub fn unit(&self) -> &'static str {
+        self.quantity.unit_of(self.turns)
+    }
+}
+
 impl Side {
     pub(super) const NAMES: &[(&str, Side)] = &[
         (Side::Left.name(), Side::Left),
@@ -427,13 +436,24 @@ impl Quantity {
         }
     }
 
-    /// Its SI unit.
+    /// Its SI unit, at a location that moves along its axis.
     pub fn unit(self) -> &'static str {
         match self {
             Quantity::Acceleration => "m/s^2",
             Quantity::Velocity => "m/s",
             Quantity::Displacement => "m",
             Quantity::Force => "N",
+        }
+    }
+
+    /// Its SI unit, at a location that moves along its axis or `turns` about it.
+    pub fn unit_of(self, turns: bool) -> &'static str {
+        match (self, turns) {
+            (_, false) => self.unit(),
+            (Quantity::Acceleration, true) => "rad/s^2",
+            (Quantity::Velocity, true) => "rad/s",
+            (Quantity::Displacement, true) => "rad",
+            (Quantity::Force, true) => "N m",
         }
     }
 }

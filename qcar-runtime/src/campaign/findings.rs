@@ -52,7 +52,7 @@ impl Campaign {
         };
         let signals = history.signals.iter();
         let of = |(channel, samples): &(super::Channel, Vec<f64>)| {
-            of_samples(run, (&channel.name, channel.quantity.unit()), samples, grid)
+            of_samples(run, (&channel.name, channel.unit()), samples, grid)
         };
         Ok(signals.flat_map(of).chain(of_sides(run, &history)).collect())
     }

@@ -252,7 +252,8 @@ fn plain_columns(campaign: &Campaign) -> Result<Vec<String>, InputError> {
             Ok(headings) => {
                 let path = campaign.folder.join(file);
                 problems.extend(table::check_units(&path, &headings, |name| {
-                    unit_of_column(campaign, name)
+                    let of_channel = || campaign.channel(name).filter(|_| allowed == channels);
+                    of_channel().map_or_else(|| unit_of_column(name), |channel| Some(channel.unit()))
                 }));
                 let names: Vec<String> = headings.into_iter().map(|own| own.name).collect();
                 problems.extend(table::check_names(&path, &names, required, allowed));
@@ -270,15 +271,15 @@ fn plain_columns(campaign: &Campaign) -> Result<Vec<String>, InputError> {
     InputError::unless_empty(problems, Some(recorded))
 }
 
-/// The SI unit of a column of a plain table.
-fn unit_of_column(campaign: &Campaign, name: &str) -> Option<&'static str> {
+/// The SI unit of a column of a plain table, other than that of a channel.
+fn unit_of_column(name: &str) -> Option<&'static str> {
     match name {
         "time" => Some("s"),
         "displacement" | "x" | "z" => Some("m"),
         "velocity" => Some("m/s"),
         "force" | "uncertainty" => Some("N"),
         "slope" => Some("1"),
-        name => campaign.channel(name).map(|channel| channel.quantity.unit()),
+        _ => None,
     }
 }
 

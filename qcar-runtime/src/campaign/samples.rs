@@ -9,7 +9,9 @@ use crate::shown::{rounded, shown};
 
 /// Flaws of the samples of a sensor in a run; `unit` is its SI unit.
 pub(super) fn of_samples(run: &Run, (channel, unit): (&str, &str), samples: &[f64], grid: Grid) -> Vec<Finding> {
-    let steady = unit == Quantity::Acceleration.unit();
+    let steady = [false, true]
+        .map(|turns| Quantity::Acceleration.unit_of(turns))
+        .contains(&unit);
     let finding = |flaw: &Flaw| Finding {
         run: run.name.clone(),
         channel: channel.into(),

@@ -77,7 +77,7 @@ fn suspect_units(campaign: &Campaign) -> Result<Vec<String>, InputError> {
     for run in campaign.runs.iter().filter(|run| run.test.sample_rate().is_some()) {
         let history = campaign.history(run)?;
         sentences.extend(history.signals.iter().filter_map(|(channel, samples)| {
-            let what = suspicion(channel.quantity.unit(), does(samples))?;
+            let what = suspicion(channel.unit(), does(samples))?;
             Some(format!("{}, `{}`: {what}", run.name, channel.name))
         }));
     }

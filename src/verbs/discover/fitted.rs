@@ -30,7 +30,7 @@ pub(super) fn offsets(of: &Explanation) -> Vec<Offset> {
         quantity: sensor.quantity.name(),
         offset,
         stderr: stderr.is_finite().then_some(stderr),
-        unit: sensor.quantity.unit(),
+        unit: sensor.unit(),
     };
     offsets.map(offset).collect()
 }

@@ -1,7 +1,5 @@
 //! Notices about sensors and ranges that a search leads to.
 
-use qcar_dsl::check::Checked;
-use qcar_dsl::units::Unit;
 use qcar_runtime::campaign::Campaign;
 use qcar_runtime::discover::Evidence;
 use qcar_runtime::discover::answer::Discovery;
@@ -31,17 +29,6 @@ fn offsets_of_the_model(discovery: &Discovery) -> impl Iterator<Item = String> {
         };
         format!("{sensor}: {what} `{own}` acts like an offset of this sensor, so no other offset is estimated for it")
     })
-}
-
-/// A sentence about the links whose stretch is an angle: the laws of most effects are those of a travel.
-pub(super) fn on_angles(model: &Checked) -> Option<String> {
-    let turning = model.links.iter().filter(|link| link.unit == Unit::ONE);
-    let turning: Vec<&str> = turning.map(|link| link.name.as_str()).collect();
-    let (first, all) = (turning.first()?, turning.join(", "));
-    Some(format!(
-        "the stretch of {all} is an angle, where effects with a force or a travel do not apply: write it as the travel at a \
-         radius, such as `link {first}: 0.1 m * part {{ … }}`, with a law in N"
-    ))
 }
 
 /// A sentence for each parameter of the campaign that is at an end of its range only without the effects of the answer:

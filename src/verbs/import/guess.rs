@@ -89,11 +89,9 @@ const OF_ANGLES: [&str; 10] = [
     "rad", "mrad", "deg", "degree", "degrees", "°", "arcmin", "rpm", "rev", "U",
 ];
 
-const UNIT_OF_ANGLE: &str =
-    "its unit is that of an angle, and a campaign has sensors of motion along an axis and of forces only";
-const NAME_OF_ANGLE: &str =
-    "its name means an angle, and a campaign has sensors of motion along an axis and of forces only";
-const ANGLE_OF_MODEL: &str = "what its name says is an angle in the model, and a campaign has sensors of motion along an axis and of forces only";
+const UNIT_OF_ANGLE: &str = "its unit is that of an angle, and no word in its name is an angle of the model";
+const NAME_OF_ANGLE: &str = "its name means an angle, and its unit is not that of one";
+const ANGLE_OF_MODEL: &str = "what its name says is an angle in the model, and its unit is not that of one";
 
 /// Proposed sensor of a channel.
 #[derive(Clone, PartialEq)]
@@ -105,6 +103,8 @@ pub(super) struct Guess {
     pub side: &'static str,
     pub axis: Axis,
     pub quantity: Quantity,
+    /// True if the place turns about the axis.
+    pub turns: bool,
     /// True if the file states a unit of the quantity.
     pub has_unit: bool,
 }
@@ -116,7 +116,7 @@ impl Guess {
         let words = [words(&signal.name), words(&signal.source.group)].concat();
         let stated = quantity_of(&signal.unit);
         if is_of_angle(&signal.unit) {
-            return Err(UNIT_OF_ANGLE);
+            return Guess::of_angle(&signal.unit, &words, about).ok_or(UNIT_OF_ANGLE);
         }
         if stated.is_none() && !matches!(signal.unit.as_str(), "" | "-" | "1" | "V" | "mV") {
             return Err("its unit is not that of an acceleration, velocity, displacement or force");
@@ -139,7 +139,29 @@ impl Guess {
             side: meaning(&words, SIDES).unwrap_or("centre"),
             axis,
             quantity,
+            turns: false,
             has_unit: stated.is_some(),
+        })
+    }
+
+    /// The sensor of an angle of the model, or of its rate or acceleration.
+    fn of_angle(unit: &str, words: &[String], about: &About) -> Option<Guess> {
+        let quantity = match in_si(unit)?.dimension {
+            [0, 0, 0] => Quantity::Displacement,
+            [0, 0, -1] => Quantity::Velocity,
+            [0, 0, -2] => Quantity::Acceleration,
+            _ => return None,
+        };
+        let named = |angle: &&State| words.contains(&angle.location.to_lowercase());
+        let angle = angles(about).find(named)?;
+        Some(Guess {
+            location: angle.location.to_string(),
+            drives: false,
+            side: meaning(words, SIDES).unwrap_or("centre"),
+            axis: Axis::new(angle.axis.to_string()),
+            quantity,
+            turns: true,
+            has_unit: true,
         })
     }
 
@@ -175,9 +197,13 @@ fn is_of_angle(unit: &str) -> bool {
 /// True if the model has an angle of that name, in lower case, and no motion along an axis.
 fn names_angle(word: &str, about: &About) -> bool {
     let is_named = |name: &str| name.to_lowercase() == word;
+    angles(about).any(|state| is_named(&state.location)) && !translating(about).any(is_named)
+}
+
+/// The speeds of the parts of a model that turn.
+fn angles(about: &About) -> impl Iterator<Item = &State> {
     let coordinates = about.states.iter().filter(|state| state.kind == StateKind::Velocity);
-    let mut angles = coordinates.filter(|state| !moves_along_axis(state));
-    angles.any(|state| is_named(&state.location)) && !translating(about).any(is_named)
+    coordinates.filter(|state| !moves_along_axis(state))
 }
 
 /// The masses and nodes of a model that move along an axis; all others turn.

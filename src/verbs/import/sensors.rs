@@ -102,10 +102,12 @@ fn section(sensor: &Sensor) -> String {
         side,
         axis,
         quantity,
+        turns,
         has_unit,
         ..
     } = &sensor.guess;
     let unit = match (has_unit, sensor.unit.as_str()) {
+        (true, unit) if *turns => format!("unit = {unit:?}\n"),
         (true, unit) => format!("# in {unit}, as the file says\n"),
         (false, "") => format!(
             "# unit = # such as \"{}\"; not stated in the file, give yours\n",

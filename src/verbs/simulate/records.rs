@@ -145,7 +145,7 @@ fn error(run: &Run, sensor: &Point, measured: &[f64], simulated: &[f64]) -> Reco
         role: if run.role == Role::Fit { "fit" } else { "held_out" },
         channel: format!("{}_{}", sensor.location, sensor.axis.name()),
         quantity: sensor.quantity.name(),
-        unit: sensor.quantity.unit(),
+        unit: sensor.unit(),
         measured_rms,
         rms_error,
         nrms: rms_error / measured_rms,

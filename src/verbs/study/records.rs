@@ -58,7 +58,7 @@ pub fn records(of: &Study) -> Vec<Replayed> {
             role: if run.role == Role::Fit { "fit" } else { "held_out" },
             channel: format!("{} {}", series.sensor.place(), series.sensor.axis.name()),
             quantity: series.sensor.quantity.name(),
-            unit: series.sensor.quantity.unit(),
+            unit: series.sensor.unit(),
             time: curve(series.at.iter().copied()),
             nrms_before: nrms(&measured, &before),
             nrms_after: after.as_ref().map(|after| nrms(&measured, after)),

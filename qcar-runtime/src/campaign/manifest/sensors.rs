@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use qcar_signals::si::in_si;
+
 use super::super::contents::{Channel, ChannelMapping, Quantity, Side};
 use super::super::fields::{Document, Section};
 use super::super::mapping;
@@ -82,7 +84,9 @@ fn sensor(section: &Section<'_>) -> Option<Sensor> {
             "the column `time` holds the time; rename the channel",
         );
     }
-    let mapping = mapping::mapping(section, name.as_deref().unwrap_or(""), quantity.map(Quantity::unit));
+    let turns = quantity.is_some_and(|own| is_of_angle(section, own));
+    let unit = quantity.map(|own| own.unit_of(turns));
+    let mapping = mapping::mapping(section, name.as_deref().unwrap_or(""), unit);
     section.finish();
     let (mapping, mapped) = mapping?;
     let channel = Channel {
@@ -91,10 +95,17 @@ fn sensor(section: &Section<'_>) -> Option<Sensor> {
         side: side?,
         axis: axis?,
         quantity: quantity?,
+        turns,
     };
     Some(Sensor {
         channel,
         mapping,
         mapped,
     })
+}
+
+/// True if the section has a unit of this quantity of a location that turns, such as `rad/s` for a velocity.
+fn is_of_angle(section: &Section<'_>, quantity: Quantity) -> bool {
+    let written = section.written("unit");
+    mapping::of_quantity(in_si(written.trim_matches('"')), quantity.unit_of(true))
 }
