@@ -480,11 +480,15 @@ fn friction_of_a_part_that_turns_is_named() {
         found.contains("N m") && answer["offsets"][0]["unit"] == "rad/s",
         "{found}"
     );
-    // What measures the angle in other units is refused with the unit that fits.
-    fs::write(&manifest, turned.replace("\"rad/s\"", "\"m/s\"")).unwrap();
+    // A force is no moment.
+    fs::write(
+        &manifest,
+        turned.replace("\"N m\"\n\n[[channel]]", "\"N\"\n\n[[channel]]"),
+    )
+    .unwrap();
     refused(
         &qcar(&["check", path]),
-        &["channel z", "m/s", "write `unit = \"rad/s\"`"],
+        &["channel push", "unit of its input", "write `unit = \"N m\"`"],
     );
 }
 

@@ -27,7 +27,7 @@ pub fn of_angles(effect: &Effect) -> Effect {
 /// The unit of a quantity of angles that corresponds to that of a quantity of lengths: a length to the power of two is
 /// added for each kg, and each length becomes an angle.
 pub fn unit(written: &UnitText) -> UnitText {
-    let mut lengths = 0;
+    let (mut lengths, mut beside) = (0, 0);
     let mut factors: Vec<UnitFactor> = Vec::new();
     for own in &written.factors {
         let unit = symbol(&own.symbol.text).map_or(Unit::ONE, |symbol| symbol.unit);
@@ -38,11 +38,13 @@ pub fn unit(written: &UnitText) -> UnitText {
             factors.push(own.clone());
             // Exponents of units in an effect are whole numbers.
             lengths += (2 * masses - meters) * own.numerator / own.denominator;
+            if masses != 0 {
+                beside = factors.len();
+            }
         }
     }
     if lengths != 0 {
-        let above = factors.iter().take_while(|own| own.numerator > 0).count();
-        let place = if lengths > 0 { above } else { factors.len() };
+        let place = if lengths > 0 { beside } else { factors.len() };
         let meters = UnitFactor {
             symbol: Name::new("m"),
             numerator: lengths,

@@ -389,6 +389,11 @@ impl<'a> Patching<'a> {
         });
     }
 
+    /// The description of a parameter of the effect.
+    pub fn doc(&self, of: &EffectParameter) -> String {
+        self.bindings.doc(of)
+    }
+
     /// An expression of the effect in the names of the model.
     pub fn meaning(&self, e: &Expression) -> PatchResult<Expression> {
         self.bindings.expression(e, &self.bindings.place.direction)

@@ -12,7 +12,8 @@ use super::terms::is_term;
 use super::{PatchResult, refused};
 use crate::diagnostic::effects;
 use crate::front::syntax::{
-    CoordinateKind, Dotted, Effect, Expression, ExpressionKind, LawStatement, Link, Name, Number, Operator, PlaceKind,
+    CoordinateKind, Dotted, Effect, EffectParameter, Expression, ExpressionKind, LawStatement, Link, Name, Number,
+    Operator, PlaceKind,
 };
 
 /// Properties of a link or mass, as written after a dot.
@@ -102,6 +103,20 @@ impl<'a> Bindings<'a> {
             Some(ExpressionKind::Name(name)) => name.to_string(),
             _ => name.to_string(),
         })
+    }
+
+    /// The description of a parameter. One `at the wheel` is that of the place itself in a model without a wheel.
+    pub fn doc(&self, of: &EffectParameter) -> String {
+        let along = &self.place.direction;
+        let lacks = |point: &&Name| {
+            let meant = self.roles.meant(self.base, along, &point.text);
+            self.base
+                .coordinate(along, meant.as_deref().unwrap_or(&point.text))
+                .is_none()
+        };
+        let absent = self.effect.pattern.seen_from.as_ref().filter(lacks);
+        let own = absent.and_then(|point| of.doc.strip_suffix(&format!(", at the {}", point.text)));
+        own.unwrap_or(&of.doc).to_string()
     }
 
     fn field(&self, owner: &Name, field: &Name, direction: &str) -> PatchResult<Expression> {

@@ -319,6 +319,7 @@ impl Patch {
             let expressions = start::expressions(declared).map(|e| patching.meaning(e));
             asked.push(start::BoundParameter {
                 declared,
+                doc: patching.doc(declared),
                 name: name.clone(),
                 expressions: expressions.collect::<PatchResult<_>>()?,
             });

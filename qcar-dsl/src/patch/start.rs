@@ -22,6 +22,8 @@ use crate::units::Unit;
 pub struct BoundParameter<'a> {
     /// The declaration in the effect.
     pub declared: &'a EffectParameter,
+    /// Its description in the model.
+    pub doc: String,
     /// Its name in the model.
     pub name: String,
     /// Its expressions, in the order of [`expressions`].
@@ -225,7 +227,7 @@ fn declaration(one: &BoundParameter, numbers: Numbers, base: &ModelTree) -> (New
         unit: declared.unit.clone(),
         default: Some(ParameterDefault::Number(number(&declared.start, numbers.start))),
         range: Some((from, to)),
-        doc: declared.doc.clone(),
+        doc: one.doc.clone(),
     };
     let new = NewParameter {
         name: one.name.clone(),
@@ -234,7 +236,7 @@ fn declaration(one: &BoundParameter, numbers: Numbers, base: &ModelTree) -> (New
         start: numbers.start,
         range: numbers.range,
         known: declared.known,
-        doc: declared.doc.clone(),
+        doc: one.doc.clone(),
         role: numbers.role,
         scales_force: numbers.unit.is_proportional_to_mass(),
         is_new: base.global(&one.name).is_none(),

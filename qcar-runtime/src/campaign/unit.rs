@@ -146,6 +146,8 @@ fn coherent(of: Dimension) -> String {
 /// Examples of units of the same kind as a coherent one, for messages.
 pub fn examples(si: &str) -> String {
     let such: &[&str] = match dimension(si) {
+        _ if si == "rad" => &["deg", "mrad"],
+        Some([0, 0, -1]) if si == "rad/s" => &["deg/s", "rpm"],
         Some([0, 1, 0]) => &["mm", "in"],
         Some([0, 1, -1]) => &["mm/s", "km/h"],
         Some([0, 1, -2]) => &["g", "mm/s^2"],

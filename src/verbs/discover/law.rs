@@ -157,6 +157,7 @@ fn of_curve(curve: &Curve, parameters: &[NewParameter], errors: &Errors, longest
     let unit = over.map_or("in its unit".into(), |own| own.unit.to_string());
     let points = determined(curve, scale.map_or(1.0, |own| own.start), &named, errors);
     let over = match curve.over.as_str() {
+        "s" if unit == "rad" => "angle",
         "s" => "travel",
         "v" => "speed",
         clock if is_clock(clock, parameters) => return of_time(&points, unit, longest),

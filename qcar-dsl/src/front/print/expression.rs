@@ -169,10 +169,18 @@ impl Display for Number {
 }
 
 impl UnitText {
-    /// The usual name of the coherent unit that is written here. `Hz` stays `Hz`, since a cycle is not a radian.
+    /// The usual name of the coherent unit that is written here. `Hz` stays `Hz`, since a cycle is not a radian, and so
+    /// do coherent units with `rad`.
     pub fn name(&self, unit: units::Unit) -> String {
         let written = self.to_string();
-        if written == "Hz" { written } else { unit.to_string() }
+        let is_coherent =
+            |own: &UnitFactor| units::symbol(&own.symbol.text).is_some_and(|own| own.multiply == own.divide);
+        let has_angle = self.factors.iter().any(|own| own.symbol.text == "rad");
+        if written == "Hz" || has_angle && self.factors.iter().all(is_coherent) {
+            written
+        } else {
+            unit.to_string()
+        }
     }
 }
 
