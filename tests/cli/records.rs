@@ -437,24 +437,70 @@ fn with_stop(begin: [f64; 2]) -> Vec<f64> {
 /// an angle as to a travel.
 #[test]
 fn friction_of_a_part_that_turns_is_named() {
+    let shaft = "link shaft: disc { spring 8 N m/rad; damper c; }";
+    let friction = |angle: f64, speed: f64| 8.0 * angle + 0.03 * speed + 0.12 * (speed / 2e-3_f64).tanh();
+    let folder = turning(shaft, 0.5, friction);
+    let (found, answer) = discovered_into(&folder.path().join("out"), folder.path().to_str().unwrap());
+    is_effect(&answer, ("coulomb_friction", "shaft"), &[("f_coulomb", 0.12)]);
+    assert!(
+        found.contains("f_coulomb  N m ") && answer["offsets"][0]["unit"] == "rad/s",
+        "{found}"
+    );
+    // A force is no moment.
+    let manifest = folder.path().join("campaign.toml");
+    let text = fs::read_to_string(&manifest).unwrap();
+    fs::write(
+        &manifest,
+        text.replace("\"N m\"\n\n[[channel]]", "\"N\"\n\n[[channel]]"),
+    )
+    .unwrap();
+    let said = ["channel push", "unit of its input", "write `unit = \"N m\"`"];
+    refused(&qcar(&["check", folder.path().to_str().unwrap()]), &said);
+}
+
+/// A disc that turns by several revolutions, with a weight beside its axis. Its speed does not tell where the weight is.
+#[test]
+fn an_unbalance_is_named() {
+    let weight = |angle: f64, speed: f64| 0.03 * speed + 0.6 * (angle + 0.8).sin();
+    let folder = turning("link bearing: disc { damper c; }", 8.0, weight);
+    let (_, answer) = discovered_into(&folder.path().join("out"), folder.path().to_str().unwrap());
+    is_effect(&answer, ("unbalance", "disc"), &[("t_weight", 0.6)]);
+}
+
+/// That this effect is found alone, with values within 3 % of the truth.
+fn is_effect(answer: &Value, (name, place): (&str, &str), truth: &[(&str, f64)]) {
+    assert_eq!(answer["verdict"], "found", "{answer}");
+    let [effect] = &answer["effects"].as_array().unwrap()[..] else {
+        panic!("{answer}");
+    };
+    assert_eq!(
+        (&effect["name"], &effect["at"]),
+        (&name.into(), &place.into()),
+        "{answer}"
+    );
+    for (name, truth) in truth {
+        let value = effect["parameters"][name].as_f64().unwrap();
+        assert!((value / truth - 1.0).abs() < 0.03, "{name} = {value}\n{effect}");
+    }
+}
+
+/// A campaign of a disc of 0.02 kg m² on a `link` with the unknown damping `c`, which a torque of this size (N m) turns
+/// against a moment that depends on angle and speed.
+fn turning(link: &str, size: f64, moment: impl Fn(f64, f64) -> f64) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().to_str().unwrap();
-    fs::write(folder.path().join("turning.axle"), DISC).unwrap();
-    let parameters = parameter("c_shaft", 0.05, "N m s/rad", "range = [0.001, 1.0]\n")
-        + &parameter("k_shaft", 7.0, "N m/rad", "range = [1.0, 20.0]\n");
+    let model = format!(
+        "axle turning {{\n    \"A disc\"\n    param c: N m s/rad = 0.05 in 1e-3..1;\n    direction phi {{\n        \
+         inertia disc = 0.02 kg m^2;\n        force motor on disc;\n        {link}\n        output disc.velocity;\n    }}\n}}\n"
+    );
+    fs::write(folder.path().join("turning.axle"), model).unwrap();
     let runs = [1.0, 1.6, 0.6].map(|level| {
-        let torque = |t: f64| 0.5 * level * push(t);
+        let torque = |t: f64| size * level * push(t);
         let given = (0..SAMPLES).map(|k| torque((k as f64 + 0.5) / RATE)).collect();
-        vec![("push", given), ("z [deg/s]", disc(torque))]
+        vec![("push", given), ("z [deg/s]", disc(torque, &moment))]
     });
     let runs: Vec<Columns> = runs.iter().map(Vec::as_slice).collect();
-    campaign(
-        folder.path(),
-        "turning.axle",
-        &parameters,
-        "band_limited = false",
-        &runs,
-    );
+    let damping = parameter("c", 0.05, "N m s/rad", "range = [0.001, 1.0]\n");
+    campaign(folder.path(), "turning.axle", &damping, "band_limited = false", &runs);
     let manifest = folder.path().join("campaign.toml");
     let text = fs::read_to_string(&manifest).unwrap();
     let turned = text
@@ -463,49 +509,12 @@ fn friction_of_a_part_that_turns_is_named() {
         .replace("unit = \"N\"", "unit = \"N m\"")
         .replace("\"body\"", "\"disc\"")
         .replace("\"displacement\"\nunit = \"m\"", "\"velocity\"\nunit = \"rad/s\"");
-    fs::write(&manifest, &turned).unwrap();
-    let (found, answer) = discovered_into(&folder.path().join("out"), path);
-    assert_eq!(answer["verdict"], "found", "{found}");
-    let [friction] = &answer["effects"].as_array().unwrap()[..] else {
-        panic!("{found}");
-    };
-    assert_eq!(
-        (&friction["name"], &friction["at"]),
-        (&"coulomb_friction".into(), &"shaft".into()),
-        "{found}"
-    );
-    let value = friction["parameters"]["f_coulomb"].as_f64().unwrap();
-    assert!((value / 0.12 - 1.0).abs() < 0.03, "{value}\n{found}");
-    assert!(
-        found.contains("N m") && answer["offsets"][0]["unit"] == "rad/s",
-        "{found}"
-    );
-    // A force is no moment.
-    fs::write(
-        &manifest,
-        turned.replace("\"N m\"\n\n[[channel]]", "\"N\"\n\n[[channel]]"),
-    )
-    .unwrap();
-    refused(
-        &qcar(&["check", path]),
-        &["channel push", "unit of its input", "write `unit = \"N m\"`"],
-    );
+    fs::write(&manifest, turned).unwrap();
+    folder
 }
-
-const DISC: &str = "axle turning {
-    \"A disc on a shaft\"
-    param c_shaft: N m s/rad = 0.05 in 1e-3..1; param k_shaft: N m/rad = 7 in 1..20;
-    direction phi {
-        inertia disc = 0.02 kg m^2;
-        force motor on disc;
-        link shaft: disc { spring k_shaft; damper c_shaft; }
-        output disc.velocity;
-    }
-}
-";
 
 /// Speed of the disc in deg/s, by the semi-implicit Euler method in fine steps.
-fn disc(torque: impl Fn(f64) -> f64) -> Vec<f64> {
+fn disc(torque: impl Fn(f64) -> f64, moment: impl Fn(f64, f64) -> f64) -> Vec<f64> {
     const FINER: usize = 400;
     let h = 1.0 / (RATE * FINER as f64);
     let [mut angle, mut speed] = [0.0; 2];
@@ -514,9 +523,7 @@ fn disc(torque: impl Fn(f64) -> f64) -> Vec<f64> {
         if step % FINER == 0 {
             samples.push(f64::to_degrees(speed));
         }
-        let friction = 0.12 * (speed / 2e-3_f64).tanh();
-        let moment = torque(step as f64 * h) - 8.0 * angle - 0.03 * speed - friction;
-        speed += h * moment / 0.02;
+        speed += h * (torque(step as f64 * h) - moment(angle, speed)) / 0.02;
         angle += h * speed;
     }
     samples
