@@ -279,7 +279,7 @@ pub(crate) fn answer(
     out.inspect(|folder| leave(folder, Vec::new()));
     let discovery =
         discovery.map_err(|error| Failure::Input(format!("{}: {error}\n", campaign.manifest().display())))?;
-    let of_sensors = notices::of_sensors(&discovery, &evidence);
+    let of_sensors = notices::of_sensors(&discovery, &evidence, bench.model().about());
     evidence.notices.extend(of_sensors);
     evidence.notices.extend(notices::on_ranges(&discovery, campaign));
     evidence.notices.extend(outside);

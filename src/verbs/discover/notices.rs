@@ -4,31 +4,46 @@ use qcar_runtime::campaign::Campaign;
 use qcar_runtime::discover::Evidence;
 use qcar_runtime::discover::answer::Discovery;
 use qcar_runtime::discover::posterior::ReversedSensor;
+use qcar_runtime::model::{About, StateKind};
 
 use super::fitted::at_bound;
 use crate::sensor_residuals::channel;
 use crate::table::number;
 
 /// Sensors without an offset of their own, and sensors whose sign is probably wrong.
-pub(super) fn of_sensors(discovery: &Discovery, evidence: &Evidence) -> Vec<String> {
-    offsets_of_the_model(discovery)
+pub(super) fn of_sensors(discovery: &Discovery, evidence: &Evidence, about: &About) -> Vec<String> {
+    offsets_of_the_model(discovery, about)
         .chain(reversed_sensors(discovery, evidence))
         .collect()
 }
 
 /// A sentence for each sensor of a record without an offset of its own, because a parameter or an initial state of the
 /// model acts as one.
-fn offsets_of_the_model(discovery: &Discovery) -> impl Iterator<Item = String> {
+fn offsets_of_the_model(discovery: &Discovery, about: &About) -> impl Iterator<Item = String> {
     let without = &discovery.after.refit.nuisance.without_offset;
     without.iter().map(|(sensor, own)| {
         let is_parameter = discovery.after.named.iter().any(|(name, _)| name == own);
         let what = if is_parameter {
-            "the parameter"
+            format!("the parameter `{own}`")
         } else {
-            "the initial value of"
+            initial_state(own, about)
         };
-        format!("{sensor}: {what} `{own}` acts like an offset of this sensor, so no other offset is estimated for it")
+        format!("{sensor}: {what} acts like an offset of this sensor, so no other offset is estimated for it")
     })
+}
+
+/// A state of a model or, with an effect of the answer, of another at the beginning of a record, in words.
+fn initial_state(name: &str, about: &About) -> String {
+    let state = about.states.iter().find(|own| own.name == name);
+    let quantity = state.and_then(|own| match own.kind {
+        StateKind::Position => Some(("position", own)),
+        StateKind::Velocity => Some(("velocity", own)),
+        StateKind::Inner => None,
+    });
+    match quantity {
+        Some((quantity, own)) => format!("the initial {quantity} of `{}` along {}", own.location, own.axis),
+        None => format!("the initial value of `{name}`"),
+    }
 }
 
 /// A sentence for each parameter of the campaign that is at an end of its range only without the effects of the answer:
