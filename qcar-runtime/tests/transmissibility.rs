@@ -123,6 +123,7 @@ fn channel(location: &str, side: Side) -> Channel {
         side,
         axis: Axis::Z,
         quantity: Quantity::Acceleration,
+        turns: false,
     }
 }
 
