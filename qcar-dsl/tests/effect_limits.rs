@@ -298,7 +298,7 @@ fn an_effect_vanishes_with_its_strength() {
     let without_strength: Vec<&String> = all.difference(&vanishing).collect();
     assert_eq!(
         without_strength,
-        ["offset_force", "spring_to_ground", "subframe", "unbalance"],
+        ["backlash", "offset_force", "spring_to_ground", "subframe", "unbalance"],
         "these vanish nowhere, or apply nowhere"
     );
 }

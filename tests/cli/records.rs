@@ -467,6 +467,16 @@ fn an_unbalance_is_named() {
     is_effect(&answer, ("unbalance", "disc"), &[("t_weight", 0.6)]);
 }
 
+/// The shaft holds the disc only beyond 0.03 rad to either side.
+#[test]
+fn backlash_is_named() {
+    let beyond = |angle: f64| (angle - 0.03).max(0.0) + (angle + 0.03).min(0.0);
+    let shaft = "link shaft: disc { spring 8 N m/rad; damper c; }";
+    let folder = turning(shaft, 0.5, |angle, speed| 8.0 * beyond(angle) + 0.03 * speed);
+    let (_, answer) = discovered_into(&folder.path().join("out"), folder.path().to_str().unwrap());
+    is_effect(&answer, ("backlash", "shaft"), &[("gap", 0.06)]);
+}
+
 /// That this effect is found alone, with values within 3 % of the truth.
 fn is_effect(answer: &Value, (name, place): (&str, &str), truth: &[(&str, f64)]) {
     assert_eq!(answer["verdict"], "found", "{answer}");

@@ -12,7 +12,15 @@ use super::stretch::{levered, lower, upper};
 use crate::front::syntax::{Coordinate, CoordinateKind, Expression, LawStatement, Link};
 
 /// The words for links, as `role tire` has them.
-pub const OF_LINKS: [&str; 6] = ["tire", "suspension", "mount", "hanger", "pivot_mount", "wheel_bushing"];
+pub const OF_LINKS: [&str; 7] = [
+    "tire",
+    "suspension",
+    "mount",
+    "hanger",
+    "pivot_mount",
+    "wheel_bushing",
+    "part",
+];
 
 /// The words for masses.
 pub const OF_MASSES: [&str; 4] = ["body", "wheel", "pivot", "part"];
@@ -104,6 +112,8 @@ impl Roles {
         let is_either = |own: &str| match role {
             "mount" => ["hanger", "pivot_mount"].contains(&own) || self.wheel.is_none(),
             "hanger" => self.wheel.is_none(),
+            // Of a machine.
+            "part" => self.wheel.is_none(),
             _ => false,
         };
         own.is_some_and(|own| *own == role || is_either(own))
