@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use qcar_dsl::check::Checked;
 use qcar_dsl::parse::parse_text;
 use qcar_dsl::patch::Patch;
 use qcar_dsl::source::Source;
@@ -73,15 +74,10 @@ pub fn of_name(name: &str) -> Option<Result<Patch, Failure>> {
     holds_effect(name, &text).then(|| read(name, &text))
 }
 
-/// The units of the parameters of a shipped effect, by name; empty for any other effect.
-pub fn units(effect: &str) -> BTreeMap<String, String> {
-    let Some(Ok(patch)) = of_name(effect) else {
-        return BTreeMap::new();
-    };
-    let effect = patch.effect();
-    let all = effect.parameters().into_iter();
-    let all = all.chain(effect.forms.iter().flat_map(|form| form.parameters()));
-    all.map(|own| (own.name.text.clone(), own.unit.to_string())).collect()
+/// The units of the parameters of a shipped effect at a place of a model, by name; empty for any other effect.
+pub fn units(effect: &str, at: &str, model: &Checked) -> BTreeMap<String, String> {
+    let patch = of_name(effect).and_then(Result::ok);
+    patch.map_or_else(BTreeMap::new, |patch| patch.units(model, at))
 }
 
 fn shipped(name: &str) -> Option<&'static models::ShippedEffect> {

@@ -467,6 +467,21 @@ fn an_unbalance_is_named() {
     is_effect(&answer, ("unbalance", "disc"), &[("t_weight", 0.6)]);
 }
 
+/// Of a part that turns, the detection limits are moments.
+#[test]
+fn nothing_is_missing_in_a_part_that_turns() {
+    let shaft = "link shaft: disc { spring 8 N m/rad; damper c; }";
+    let folder = turning(shaft, 0.5, |angle, speed| 8.0 * angle + 0.03 * speed);
+    let (said, answer) = discovered_into(&folder.path().join("out"), folder.path().to_str().unwrap());
+    assert_eq!(answer["verdict"], "none", "{said}");
+    let limit = said.lines().find(|line| line.starts_with("coulomb_friction "));
+    let limit = limit.unwrap_or_else(|| panic!("{said}"));
+    assert!(
+        limit.contains(" N m, k_presliding ") && limit.ends_with(" N m/rad"),
+        "{limit}"
+    );
+}
+
 /// The shaft holds the disc only beyond 0.03 rad to either side.
 #[test]
 fn backlash_is_named() {

@@ -40,6 +40,7 @@ mod rules;
 pub mod difference;
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 
 pub use all_outputs::{is_push, push, with_all_outputs};
 use bind::Bindings;
@@ -54,7 +55,7 @@ pub use scale::Scale;
 use crate::check::{Checked, Unseen, check_text};
 use crate::derive::identifiability;
 use crate::diagnostic::{Diagnostic, Report, Severity, effects};
-use crate::front::syntax::{Effect, File, Item, Link, Name};
+use crate::front::syntax::{Effect, File, Form, Item, Link, Name};
 use crate::hash::HashMap;
 use crate::source::Source;
 
@@ -179,6 +180,27 @@ impl Patch {
     /// The curves of its usual form whose points are numbers or parameters, in the order of its text.
     pub fn curves(&self) -> Vec<Curve> {
         curve::curves(&self.effect)
+    }
+
+    /// The units of all its parameters at a place of a model, by their names in the effect. Those of a place that the model
+    /// lacks are those of parts that move.
+    pub fn units(&self, model: &Checked, place: &str) -> BTreeMap<String, String> {
+        let base = ModelTree::of(model);
+        let places = place::fitting(&base, &Roles::of(&base, &|_| None), &self.effect.pattern);
+        let place = places.iter().find(|own| own.label == place);
+        let effect = place.map_or(Cow::Borrowed(&self.effect), |place| self.effect_at(&base, place));
+        let of_forms = effect.forms.iter().flat_map(Form::parameters);
+        let all = effect.parameters().into_iter().chain(of_forms);
+        all.map(|own| (own.name.text.clone(), own.unit.to_string())).collect()
+    }
+
+    /// The effect in the units of a place.
+    fn effect_at(&self, base: &ModelTree, place: &Place) -> Cow<'_, Effect> {
+        if base.turns(&place.direction, &place.name) {
+            Cow::Owned(angle::of_angles(&self.effect))
+        } else {
+            Cow::Borrowed(&self.effect)
+        }
     }
 
     /// The effect as a file in which these parameters have numbers as starts, independent of the model.
@@ -308,11 +330,7 @@ impl Patch {
         values: Values,
     ) -> PatchResult<(ModelTree, Vec<NewParameter>, Vec<SignalChange>)> {
         self.form_fits(base, roles, place)?;
-        let effect = if base.turns(&place.direction, &place.name) {
-            Cow::Owned(angle::of_angles(&self.effect))
-        } else {
-            Cow::Borrowed(&self.effect)
-        };
+        let effect = self.effect_at(base, place);
         let mut patching = apply::apply(Bindings::new(base, roles, &effect, place))?;
         let mut asked = Vec::new();
         for (declared, name) in &patching.parameters {

@@ -21,10 +21,10 @@ pub(super) struct Nuisance<'a> {
 }
 
 pub(super) fn json(of: &Answer) -> Vec<Nuisance<'_>> {
-    of.discovery.nuisances[1].iter().map(nuisance).collect()
+    of.discovery.nuisances[1].iter().map(|own| nuisance(own, of)).collect()
 }
 
-fn nuisance(of: &Finding) -> Nuisance<'_> {
+fn nuisance<'a>(of: &'a Finding, answer: &'a Answer) -> Nuisance<'a> {
     let parameters = of.parameters.iter();
     let error = |error: f64| error.is_finite().then_some(error);
     Nuisance {
@@ -32,14 +32,14 @@ fn nuisance(of: &Finding) -> Nuisance<'_> {
         at: &of.at,
         parameters: parameters.clone().map(|own| (own.0.clone(), own.1)).collect(),
         stderr: parameters.map(|own| (own.0.clone(), error(own.2))).collect(),
-        units: effects::units(&of.effect),
+        units: effects::units(&of.effect, &of.at, &answer.base),
     }
 }
 
 /// A paragraph for each; empty without any.
 pub(super) fn text(of: &Answer) -> String {
     let paragraph = |own: &Finding| {
-        let table = table(own, &effects::units(&own.effect));
+        let table = table(own, &effects::units(&own.effect, &own.at, &of.base));
         format!(
             "\nfitted as a nuisance, not part of the answer: {} at {}\n{table}",
             own.effect, own.at

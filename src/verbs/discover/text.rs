@@ -132,7 +132,7 @@ fn remaining(of: &Answer) -> String {
 fn detection_limits(of: &Answer) -> String {
     let mut table = Table::new(["effect", "at", "times_the_limit", "of_this_size"]);
     for own in of.detection_limits() {
-        let of_effect = effects::units(&own.effect);
+        let of_effect = effects::units(&own.effect, &own.at, &of.base);
         let usual = own.default_size.iter().map(|(name, value)| {
             let si = of_effect.get(name).map_or("1", String::as_str);
             units::with_unit(&format!("{name} {}", number(units::value(*value, si), 3)), si)
