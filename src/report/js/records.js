@@ -62,8 +62,8 @@ function drawRecords(own, place) {
 
 // The quantity over which a force is drawn.
 const TRAVELS = [
-  { of: 'velocity', label: 'velocity', unit: 'm/s' },
-  { of: 'displacement', label: 'travel', unit: 'm' },
+  { of: 'velocity', label: 'velocity' },
+  { of: 'displacement', label: 'travel' },
 ];
 
 function recordFigures(record) {
@@ -85,9 +85,9 @@ function recordCurves(record) {
   ];
 }
 
-function drawOrbit(record, { of, label, unit }, place) {
+function drawOrbit(record, { of, label }, place) {
   orbit(place, {
-    x: { label, unit },
+    x: { label, unit: record.travel.units[of] },
     y: { label: record.quantity, unit: record.unit },
     at: record.travel[of],
     curves: recordCurves(record),

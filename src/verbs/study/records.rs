@@ -35,10 +35,19 @@ pub struct Replayed {
 /// A prescribed motion at the times of a record.
 #[derive(Serialize)]
 struct Travel {
-    /// Travel, m.
+    /// Travel, m, or an angle, rad.
     displacement: Vec<f64>,
-    /// Speed, m/s.
+    /// Speed, m/s or rad/s.
     velocity: Vec<f64>,
+    /// Their units.
+    units: TravelUnits,
+}
+
+/// Units of a prescribed motion.
+#[derive(Serialize)]
+struct TravelUnits {
+    displacement: &'static str,
+    velocity: &'static str,
 }
 
 /// The records of a study.
@@ -92,7 +101,7 @@ fn travel(evidence: &Evidence, series: &Series) -> Option<Travel> {
         return None;
     };
     let input = |(point, _): &&(Point, Vec<f64>)| moves(point, series);
-    let (_, samples) = inputs.signals.iter().find(input)?;
+    let (point, samples) = inputs.signals.iter().find(input)?;
     let place = |time: f64| ((time - inputs.start) * rate).round() as usize;
     let slope = |at: usize| {
         let (low, high) = (at.saturating_sub(1), (at + 1).min(samples.len() - 1));
@@ -101,6 +110,10 @@ fn travel(evidence: &Evidence, series: &Series) -> Option<Travel> {
     Some(Travel {
         displacement: curve(series.at.iter().map(|&time| samples[place(time)])),
         velocity: curve(series.at.iter().map(|&time| slope(place(time)))),
+        units: TravelUnits {
+            displacement: point.unit(),
+            velocity: Quantity::Velocity.unit_of(point.turns),
+        },
     })
 }
 
