@@ -59,9 +59,7 @@ pub fn scales(model: &Checked, values: &BTreeMap<String, f64>, evidence: &Eviden
         }
     }
     for free in free(evidence) {
-        let own = push(free.reference.axis.name(), &free.reference.location);
-        let excitation = shown.about().excitations.iter().position(|input| input.name == own);
-        if let Some(excitation) = excitation {
+        if let Some(excitation) = pushed(shown.about(), free.reference) {
             raise_all(&mut found, &mut ratios, excitation, &free);
         }
     }
@@ -217,6 +215,16 @@ fn excitation(about: &About, reference: &Point) -> Option<usize> {
             .filter(|_| others.next().is_none())
             .map(|(place, _)| place)
     })
+}
+
+/// The force input at the mass where a sensor is, or at the only mass along its axis.
+fn pushed(about: &About, sensor: &Point) -> Option<usize> {
+    let (axis, inputs) = (sensor.axis.name(), about.excitations.iter().enumerate());
+    let own = push(axis, &sensor.location);
+    let mut along = inputs.filter(|(_, input)| input.axis == axis && is_push(&input.name));
+    let first = along.clone().find(|(_, input)| input.name == own);
+    let only = || along.next().filter(|_| along.next().is_none());
+    first.or_else(only).map(|(place, _)| place)
 }
 
 /// Measured forces and stretches of links in records. The linear response can be far from them: near a resonance that a

@@ -492,6 +492,20 @@ fn backlash_is_named() {
     is_effect(&answer, ("backlash", "shaft"), &[("gap", 0.06)]);
 }
 
+/// A disc on a wire swings freely. The ranges of effects follow from its motion: the friction is a hundred-thousandth of the
+/// usual force.
+#[test]
+fn friction_of_a_free_decay_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = MODEL.replace("        force motor on disc;\n", "");
+    let wire = "link wire: disc { spring 0.8 N m/rad; }\n        link air: disc { damper c; }";
+    let moment = |angle: f64, speed: f64| 0.8 * angle + 0.002 * speed + 0.015 * (speed / 2e-3_f64).tanh();
+    let runs = [1.0, 0.7, 0.8].map(|angle| vec![("z [deg/s]", disc(angle, |_| 0.0, moment))]);
+    write_turning(folder.path(), &model.replace("LINK", wire), 0.005, &runs);
+    let (_, answer) = discovered_into(&folder.path().join("out"), folder.path().to_str().unwrap());
+    is_effect(&answer, ("coulomb_friction", "air"), &[("f_coulomb", 0.015)]);
+}
+
 /// That this effect is found alone, with values within 3 % of the truth.
 fn is_effect(answer: &Value, (name, place): (&str, &str), truth: &[(&str, f64)]) {
     assert_eq!(answer["verdict"], "found", "{answer}");
@@ -509,24 +523,38 @@ fn is_effect(answer: &Value, (name, place): (&str, &str), truth: &[(&str, f64)])
     }
 }
 
+const MODEL: &str = "axle turning {
+    \"A disc\"
+    param c: N m s/rad = 0.05 in 1e-4..1;
+    direction phi {
+        inertia disc = 0.02 kg m^2;
+        force motor on disc;
+        LINK
+        output disc.velocity;
+    }
+}
+";
+
 /// A campaign of a disc of 0.02 kg m² on a `link` with the unknown damping `c`, which a torque of this size (N m) turns
 /// against a moment that depends on angle and speed.
 fn turning(link: &str, size: f64, moment: impl Fn(f64, f64) -> f64) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
-    let model = format!(
-        "axle turning {{\n    \"A disc\"\n    param c: N m s/rad = 0.05 in 1e-3..1;\n    direction phi {{\n        \
-         inertia disc = 0.02 kg m^2;\n        force motor on disc;\n        {link}\n        output disc.velocity;\n    }}\n}}\n"
-    );
-    fs::write(folder.path().join("turning.axle"), model).unwrap();
     let runs = [1.0, 1.6, 0.6].map(|level| {
         let torque = |t: f64| size * level * push(t);
         let given = (0..SAMPLES).map(|k| torque((k as f64 + 0.5) / RATE)).collect();
-        vec![("push", given), ("z [deg/s]", disc(torque, &moment))]
+        vec![("push", given), ("z [deg/s]", disc(0.0, torque, &moment))]
     });
+    write_turning(folder.path(), &MODEL.replace("LINK", link), 0.05, &runs);
+    folder
+}
+
+/// Writes the model and the campaign of a disc with these records. The damping starts at `c` N m s/rad.
+fn write_turning(folder: &Path, model: &str, c: f64, runs: &[Vec<(&str, Vec<f64>)>]) {
+    fs::write(folder.join("turning.axle"), model).unwrap();
     let runs: Vec<Columns> = runs.iter().map(Vec::as_slice).collect();
-    let damping = parameter("c", 0.05, "N m s/rad", "range = [0.001, 1.0]\n");
-    campaign(folder.path(), "turning.axle", &damping, "band_limited = false", &runs);
-    let manifest = folder.path().join("campaign.toml");
+    let damping = parameter("c", c, "N m s/rad", "range = [0.0001, 1.0]\n");
+    campaign(folder, "turning.axle", &damping, "band_limited = false", &runs);
+    let manifest = folder.join("campaign.toml");
     let text = fs::read_to_string(&manifest).unwrap();
     let turned = text
         .replace("axis = \"z\"", "axis = \"phi\"")
@@ -535,18 +563,16 @@ fn turning(link: &str, size: f64, moment: impl Fn(f64, f64) -> f64) -> tempfile:
         .replace("\"body\"", "\"disc\"")
         .replace("\"displacement\"\nunit = \"m\"", "\"velocity\"\nunit = \"rad/s\"");
     fs::write(&manifest, turned).unwrap();
-    folder
 }
 
-/// Speed of the disc in deg/s, by the semi-implicit Euler method in fine steps.
-fn disc(torque: impl Fn(f64) -> f64, moment: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+/// Speed of the disc in deg/s from an angle at rest, by the semi-implicit Euler method in fine steps.
+fn disc(mut angle: f64, torque: impl Fn(f64) -> f64, moment: impl Fn(f64, f64) -> f64) -> Vec<f64> {
     const FINER: usize = 400;
     let h = 1.0 / (RATE * FINER as f64);
-    let [mut angle, mut speed] = [0.0; 2];
-    let mut samples = Vec::new();
+    let (mut speed, mut samples) = (0.0_f64, Vec::new());
     for step in 0..SAMPLES * FINER {
         if step % FINER == 0 {
-            samples.push(f64::to_degrees(speed));
+            samples.push(speed.to_degrees());
         }
         speed += h * (torque(step as f64 * h) - moment(angle, speed)) / 0.02;
         angle += h * speed;

@@ -43,7 +43,8 @@ pub fn with_all_outputs(model: &Checked) -> Result<Checked, Report> {
 
 fn shown(direction: &Direction) -> Vec<Statement> {
     let of_links = links(direction).flat_map(|link| ["stretch", "force"].map(|what| (&link.name, what)));
-    let masses = coordinates(direction).filter(|own| matches!(own.kind, CoordinateKind::Mass(_)));
+    let is_mass = |kind: &CoordinateKind| matches!(kind, CoordinateKind::Mass(_) | CoordinateKind::Inertia(_));
+    let masses = coordinates(direction).filter(|own| is_mass(&own.kind));
     let masses: Vec<&Name> = masses.map(|mass| &mass.name).collect();
     let of_masses = masses.iter().map(|mass| (*mass, "acceleration"));
     let outputs = of_links.chain(of_masses);
