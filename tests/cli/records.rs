@@ -492,7 +492,7 @@ fn backlash_is_named() {
     is_effect(&answer, ("backlash", "shaft"), &[("gap", 0.06)]);
 }
 
-/// A disc on a wire swings freely. The ranges of effects follow from its motion: the friction is a hundred-thousandth of the
+/// A disc on a wire swings freely. The ranges of effects follow from its motion: the friction is far below a
 /// usual force.
 #[test]
 fn friction_of_a_free_decay_is_named() {
