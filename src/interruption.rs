@@ -26,9 +26,13 @@ pub fn keep(part: &str) {
     known().0.push_str(part);
 }
 
-/// Stores a sentence on an interim result, for the message after a stop.
+/// Stores a sentence on an interim result, for the message after a stop, unless it is the last one.
 pub fn note(sentence: &str) {
-    known().1.push_str(&format!("so far: {sentence}\n"));
+    let line = format!("so far: {sentence}\n");
+    let mut known = known();
+    if !known.1.ends_with(&line) {
+        known.1.push_str(&line);
+    }
 }
 
 /// Stores files that are written if the work is stopped, instead of those stored before.

@@ -456,6 +456,13 @@ fn friction_of_a_part_that_turns_is_named() {
     .unwrap();
     let said = ["channel push", "unit of its input", "write `unit = \"N m\"`"];
     refused(&qcar(&["check", folder.path().to_str().unwrap()]), &said);
+    fs::write(&manifest, text).unwrap();
+    // `1/min` does not say whether it counts revolutions.
+    let records = folder.path().join("run_0.csv");
+    let table = fs::read_to_string(&records).unwrap();
+    fs::write(&records, table.replace("[deg/s]", "[1/min]")).unwrap();
+    let said = ["run_0.csv, line 1, column `z`", "\"1/min\"", "\"rpm\""];
+    refused(&qcar(&["check", folder.path().to_str().unwrap()]), &said);
 }
 
 /// A disc that turns by several revolutions, with a weight beside its axis. Its speed does not tell where the weight is.

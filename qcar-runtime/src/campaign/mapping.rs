@@ -2,7 +2,7 @@
 
 use super::contents::{ChannelMapping, Quantity, Trigger, Window};
 use super::fields::Section;
-use super::unit::{self, examples};
+use super::unit::{self, examples, says_its_angle};
 use qcar_signals::si::{Si, in_si};
 
 /// Duration at the beginning of a recording whose mean `zero = "start"` subtracts, s.
@@ -41,12 +41,18 @@ pub(super) fn mapping(section: &Section<'_>, name: &str, si: Option<&'static str
 }
 
 fn check_unit(section: &Section<'_>, name: &str, unit: &str, si: &'static str, mapped: bool) {
-    if mapped && !of_quantity(in_si(unit), si) {
+    if mapped && !(of_quantity(in_si(unit), si) && says_its_angle(unit, si)) {
         let remedy = "give the unit of the values after `scale` and `offset`";
         section.wrong("unit", format!("\"{unit}\""), examples(si), remedy);
     }
     if !mapped && unit::dimension(unit) != unit::dimension(si) {
-        let remedy = format!("convert the column `{name}` in every file, and write this unit");
+        // Only the header line of a table may state another unit of the same kind.
+        let stated = if of_quantity(in_si(unit), si) {
+            format!(" or state its unit in the header line, as in `{name} [{unit}]`,")
+        } else {
+            String::new()
+        };
+        let remedy = format!("convert the column `{name}` in every file,{stated} and write this unit");
         section.wrong("unit", format!("\"{unit}\""), format!("\"{si}\""), remedy);
     }
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use csv::{ByteRecord, ReaderBuilder, Terminator};
 
-use super::unit::{Declared, examples};
+use super::unit::{Declared, examples, says_its_angle};
 use crate::bounded;
 use crate::error::{InputError, Place, Problem};
 
@@ -78,7 +78,8 @@ pub(super) fn check_units(
     let stated = headings
         .iter()
         .filter_map(|own| Some((&own.name, own.unit.as_ref()?, si(&own.name)?)));
-    let wrong = stated.filter(|(_, unit, si)| !Declared::of(unit).is_some_and(|unit| unit.is_like(si)));
+    let fits = |unit: &str, si: &str| Declared::of(unit).is_some_and(|own| own.is_like(si)) && says_its_angle(unit, si);
+    let wrong = stated.filter(|(_, unit, si)| !fits(unit, si));
     wrong
         .map(|(name, unit, si)| {
             let place = Place::Cell(1, name.clone());

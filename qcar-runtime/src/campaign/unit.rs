@@ -113,6 +113,11 @@ impl Declared {
     }
 }
 
+/// True unless a unit for an angle does not say which angle it counts: a speed in `1/min` may be in revolutions.
+pub fn says_its_angle(unit: &str, si: &str) -> bool {
+    !si.starts_with("rad") || ["rad", "deg", "°", "rpm"].iter().any(|symbol| unit.contains(symbol))
+}
+
 /// Usual units of a dimension.
 const USUAL: [(&str, Dimension); 12] = [
     ("1", [0, 0, 0]),

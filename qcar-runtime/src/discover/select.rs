@@ -183,11 +183,13 @@ fn is_more_probable(log_evidence: f64, than: &Set, evidence: &Evidence) -> bool 
 /// The search from fitted sets, of which the first is the base model. As soon as the error of the integration of records
 /// could change the answer, it ends with the sets that it has found.
 fn attempt(mut sets: Vec<Set>, evidence: &Evidence, progress: Progress<'_>) -> Result<Searched, Vec<Set>> {
-    let text = format!(
-        "the base model alone leaves {}",
-        rms_text(&sets[0].explanation, evidence)
-    );
-    progress(Update::Interim(&text, &[], &sets[0].explanation));
+    if sets.len() == 1 {
+        let text = format!(
+            "the base model alone leaves {}",
+            rms_text(&sets[0].explanation, evidence)
+        );
+        progress(Update::Interim(&text, &[], &sets[0].explanation));
+    }
     let mut law = FirstLaw::default();
     let mut accuracy = AccuracyCheck::new(evidence);
     while let Some(place) = next(&sets, evidence) {
