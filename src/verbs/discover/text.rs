@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use qcar_runtime::discover::answer::Verdict;
+use qcar_runtime::discover::numbers::LARGE;
 use qcar_runtime::discover::observe::Kind;
 use qcar_runtime::discover::posterior::Explanation;
 
@@ -46,6 +47,7 @@ pub(super) fn text(of: &Answer) -> String {
             out += &rivals(finding);
         }
     }
+    out += &error_of_form(of);
     out += &nuisances::text(of);
     for (name, end) in at_bound(&of.discovery.after) {
         let _ = writeln!(out, "\n{name} is at the {end} end of its range");
@@ -70,6 +72,18 @@ pub(super) fn text(of: &Answer) -> String {
         let _ = writeln!(out, "\nmodel file: {}", file.display());
     }
     out
+}
+
+/// What the standard errors leave out, if the answer leaves more than noise; else empty.
+fn error_of_form(of: &Answer) -> String {
+    let left = of.discovery.after.misfit.judged(&of.evidence);
+    if of.discovery.findings.is_empty() || left <= LARGE {
+        return String::new();
+    }
+    format!(
+        "\n{} standard deviations remain: a law may have another form, and the standard errors do not include that\n",
+        number(left, 3)
+    )
 }
 
 /// What the base model is compared with, and the title of its column: the model with the learned law, or else the answer.

@@ -113,8 +113,8 @@ fn share(part: f64, all: f64) -> f64 {
 /// Number of candidates in the answer.
 const CANDIDATES: usize = 3;
 
-/// The most probable effects, and those of equal probability by what they gain alone, without those that alone explain
-/// nothing. Dismissed answers do not count towards the probability.
+/// The most probable effects, and those of equal probability by what they gain alone. Those that alone explain nothing are
+/// left out unless they are more probable than not, beside others. Dismissed answers do not count towards the probability.
 fn candidates(sets: &[Set], answers: &[Answer], before: &Set, evidence: &Evidence) -> Vec<Probable> {
     let mut names: Vec<(&str, &str)> = sets.iter().flat_map(Set::names).collect();
     names.sort_unstable();
@@ -146,7 +146,7 @@ fn candidates(sets: &[Set], answers: &[Answer], before: &Set, evidence: &Evidenc
             log_evidence: alone.map(|set| set.explanation.refit.log_evidence - before.explanation.refit.log_evidence),
         })
     });
-    let explains = |own: &Probable| own.explained.is_none_or(|share| share > 0.0);
+    let explains = |own: &Probable| own.probability > 0.5 || own.explained.is_none_or(|share| share > 0.0);
     let mut probable: Vec<Probable> = probable.filter(explains).collect();
     probable.sort_by(|a, b| {
         let order = b.probability.total_cmp(&a.probability);
