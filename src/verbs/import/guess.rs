@@ -89,7 +89,8 @@ const OF_ANGLES: [&str; 10] = [
     "rad", "mrad", "deg", "degree", "degrees", "°", "arcmin", "rpm", "rev", "U",
 ];
 
-const UNIT_OF_ANGLE: &str = "its unit is that of an angle, and no word in its name is an angle of the model";
+const UNIT_OF_ANGLE: &str =
+    "its unit is that of an angle, which needs a unit of rad, deg or rpm and an angle of the model in its name";
 const NAME_OF_ANGLE: &str = "its name means an angle, and its unit is not that of one";
 const ANGLE_OF_MODEL: &str = "what its name says is an angle in the model, and its unit is not that of one";
 
