@@ -262,6 +262,12 @@ fn lacks_nothing(set: &Set, evidence: &Evidence) -> bool {
     evidence.runs.iter().all(is_record) && leaves_noise
 }
 
+/// True if the set misses more of a sensor than any model is expected to, and noise does not explain it.
+fn misses_a_sensor(set: &Set, evidence: &Evidence) -> bool {
+    let shares = set.explanation.misfit.sensor_shares(evidence, evidence.judging());
+    shares.into_iter().any(|share| share.is_large(&evidence.numbers))
+}
+
 /// True if the held-out runs support only a part of the set and this part explains most of the excess residual.
 fn needs_no_further_effect(sets: &[Set], set: usize, evidence: &Evidence) -> bool {
     let answer = supported_part(sets, set, evidence);
@@ -280,8 +286,8 @@ const BEAM: usize = 2;
 /// 3. the next one-effect set of the beam, if something is still missing, or if more than noise is left and that set
 ///    explains most of the excess residual too.
 ///
-/// A third effect is tried only if the first two explain most of the excess residual. Otherwise the catalogue has no
-/// answer. Nothing is worth trying if the most probable set lacks nothing.
+/// A third effect is tried only if the first two explain most of the excess residual, since otherwise the catalogue has no
+/// answer, and if they still miss a sensor. Nothing is worth trying if the most probable set lacks nothing.
 fn next(sets: &[Set], evidence: &Evidence) -> Option<usize> {
     let best = best(sets);
     if lacks_nothing(&sets[best], evidence) {
@@ -289,7 +295,8 @@ fn next(sets: &[Set], evidence: &Evidence) -> Option<usize> {
     }
     let explained = || explained_share(&sets[best_base(sets)], &sets[best], evidence);
     let effects = sets[best].names().len();
-    let may_grow = effects < 2 || effects < MOST_EFFECTS && explained() >= GREATER_PART;
+    let may_be_third = || explained() >= GREATER_PART && misses_a_sensor(&sets[best], evidence);
+    let may_grow = effects < 2 || effects < MOST_EFFECTS && may_be_third();
     let is_open = !sets[best].extended && may_grow;
     let first = is_open
         .then_some(best)
