@@ -39,7 +39,7 @@ impl BeforeAfter {
 }
 
 /// Residuals of every sensor in every kind of run, on the runs that judge a model.
-/// Higher harmonics are left out, because they are small.
+/// Higher harmonics are left out, because they are small, and so are sensors that show nothing but noise.
 pub(crate) fn left(evidence: &Evidence, [before, after]: [&Explanation; 2]) -> Vec<SensorResidual> {
     let [before, after] = [before, after].map(|of| of.misfit.sensor_shares(evidence, evidence.judging()));
     let left = |(before, after): (SensorShare, SensorShare)| SensorResidual {
@@ -49,7 +49,9 @@ pub(crate) fn left(evidence: &Evidence, [before, after]: [&Explanation; 2]) -> V
         before_percent: 100.0 * before.missed(),
         after_percent: 100.0 * after.missed(),
     };
-    before.into_iter().zip(after).map(left).collect()
+    let pairs = before.into_iter().zip(after);
+    let shown = pairs.filter(|(before, after)| !(before.is_noise() && after.is_noise()));
+    shown.map(left).collect()
 }
 
 /// Name of the kind of run.

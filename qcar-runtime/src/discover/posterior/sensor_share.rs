@@ -30,6 +30,12 @@ impl SensorShare<'_> {
         (residual / noise).sqrt()
     }
 
+    /// True if neither the signal nor the residual is more than noise, so that their ratio means nothing.
+    pub fn is_noise(&self) -> bool {
+        let [_, noise, signal] = self.squares;
+        (signal / noise).sqrt() <= LARGE && self.deviations() <= LARGE
+    }
+
     /// True if the model misses more of the signal than any model is expected to, and noise does not explain it, or if
     /// it cannot predict the runs.
     pub fn is_large(&self, numbers: &Numbers) -> bool {
@@ -75,4 +81,28 @@ fn squares(series: &Series, normalised: &[f64]) -> [f64; 3] {
         variances.map(|variance| parts as f64 * variance).sum(),
         series.value.iter().map(|value| (value - mean).norm_sqr()).sum(),
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::{Axis, Quantity};
+
+    #[test]
+    fn a_sensor_that_shows_neither_a_signal_nor_a_residual_is_noise() {
+        let sensor = Point::new("spring", Axis::Z, Quantity::Force);
+        let is_noise = |residual: f64, signal: f64| {
+            let squares = [residual * residual, 1.0, signal * signal];
+            let kind = Kind::Width;
+            SensorShare {
+                sensor: &sensor,
+                kind,
+                squares,
+            }
+            .is_noise()
+        };
+        assert!(is_noise(0.98, 1.0));
+        assert!(!is_noise(0.98, 30.0), "a signal that the model explains");
+        assert!(!is_noise(3.0, 1.0), "a motion of the model that nobody measured");
+    }
 }
