@@ -423,6 +423,24 @@ fn the_form_of_an_effect_is_chosen_again_beside_another() {
     assert_eq!(resonator["form"], "vertical");
 }
 
+/// The cleat runs that are held out show the friction and do not reach the stop, which only the K&C curves do.
+#[test]
+#[ignore = "a whole search; .ci/run runs it"]
+fn a_stop_that_only_fitted_runs_reach_is_found_beside_a_friction_that_all_runs_show() {
+    let friction = [("f_coulomb", 70.0), ("k_presliding", 700e3)];
+    let stop = [("gap", 0.05), ("k_stop", 60e3)];
+    let [stop, friction] = found_in_pair(
+        13,
+        Programme::fast(),
+        [
+            Hidden::new("coulomb_friction", "damper", &friction),
+            Hidden::new("bump_stop", "spring", &stop),
+        ],
+    );
+    assert_eq!([&stop["name"], &stop["at"]], ["bump_stop", "spring"]);
+    assert_eq!([&friction["name"], &friction["at"]], ["coulomb_friction", "damper"]);
+}
+
 /// The two effects that are named, sorted by name, in a campaign with two hidden ones.
 fn found_in_pair(seed: u64, programme: Programme, effects: [Hidden; 2]) -> [Value; 2] {
     let answer = answer_to(Order {

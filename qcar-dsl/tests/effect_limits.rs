@@ -391,6 +391,27 @@ fn a_progressive_spring_has_its_rate_at_40_mm_of_wheel_travel() {
     }
 }
 
+/// The rate is `k cosh(s / s0)`, and `s0` = 2 mm / sqrt(2 * 0.5) = 2 mm.
+#[test]
+fn an_exponential_bushing_has_a_rate_that_grows_with_the_hyperbolic_cosine() {
+    let model = in_form(
+        &model("axle_b_rigid_tm"),
+        "bushing_saturation",
+        "exponential",
+        "wheel_bushing_x",
+    );
+    let running = Running::new(&model, &[("rate_increase_at_2mm", 0.5)]);
+    let on_wheel = |x: f64| 42.0 * running.rate("vx_wheel", &|name| if name == "x_wheel" { x } else { 0.0 });
+    for travel in [0.0, 1e-6, 0.002, -0.004] {
+        let rate = -slope(on_wheel, travel);
+        let expected = 4e5 * (travel / 0.002_f64).cosh();
+        assert!(
+            (rate / expected - 1.0).abs() < 1e-6,
+            "at {travel} m: {rate}, not {expected}"
+        );
+    }
+}
+
 #[test]
 fn a_digressive_damper_begins_with_c0_and_tends_to_the_force_of_v0_at_the_wheel() {
     for (form, share_at_v0) in [("gradual", 0.5), ("blow_off", 1f64.tanh())] {

@@ -130,6 +130,20 @@ pub(super) fn line_at(frequency: &[f64], at: f64) -> usize {
     line.expect("a value of a sweep is at one of its frequencies")
 }
 
+/// Share of a record at each end that is not compared if its inputs are band-limited: their interpolation is inaccurate
+/// there.
+const ENDS: f64 = 0.02;
+
+/// Number of samples at either end of a record that are not compared: where the band filter reaches beyond the record, and
+/// where inputs that are interpolated within their band are inaccurate. None of a periodic record.
+pub(super) fn left_out(band: Option<&Band>, is_interpolated: bool, periodic: bool, samples: usize) -> usize {
+    if periodic {
+        return 0;
+    }
+    let ends = if is_interpolated { ENDS } else { 0.0 };
+    band.map_or(0, Band::half).max((ends * samples as f64) as usize)
+}
+
 impl Stimulus {
     /// The compared part of a recorded signal: filtered by the band, if there is one.
     pub fn of_band(&self, signal: &[f64]) -> Vec<f64> {
@@ -143,15 +157,19 @@ impl Stimulus {
         }
     }
 
-    /// Number of samples at either end of a record that are not compared because the band filter reaches beyond the
-    /// record.
+    /// Number of samples at either end of a record that are not compared: see [`left_out`].
     pub fn cut(&self) -> usize {
         match self {
             Stimulus::History {
-                band: Some(band),
-                periodic: false,
+                band,
+                band_limited,
+                periodic,
+                inputs,
                 ..
-            } => band.half(),
+            } => {
+                let is_interpolated = *band_limited && !inputs.signals.is_empty();
+                left_out(band.as_ref(), is_interpolated, *periodic, inputs.samples)
+            }
             _ => 0,
         }
     }

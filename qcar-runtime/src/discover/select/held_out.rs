@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::set::{Set, best_base, excess, explained_share, is_part, most_probable_first};
+use super::set::{Set, best_base, excess, explained_share, held_out_judge, is_part, most_probable_first};
 use crate::campaign::Role;
 use crate::discover::observe::Evidence;
 use crate::discover::posterior::Explanation;
@@ -12,6 +12,9 @@ use crate::discover::posterior::Explanation;
 /// its excess residual, if one of these has a parameter at its bound, or if only the cleat runs along one axis prefer
 /// the set. It also does if it explains nearly all of the residual and the fitted runs determine no parameter of an
 /// additional effect. The last three checks need no held-out runs. A set with a magnitude at its bound replaces no other.
+///
+/// The held-out runs judge only the additional effects that they excite: beside a friction that cleat runs show, a stop
+/// that K&C curves alone reach is withdrawn only if the prediction becomes certainly worse with it.
 ///
 /// Fewer effects that are no part of the set replace it if they explain nearly all of the residual and predict the
 /// held-out runs at least as well: several effects can imitate a law whose form is a little different.
@@ -26,9 +29,13 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
             let is_enough = || excess(&part.with_sensors_of(set, evidence), evidence) <= 0.0;
             let explains_little = || is_enough() || explained_share(part, set, evidence) < evidence.numbers.explained();
             let changes_little = !part.names().is_empty() && explains_little();
-            let fails = is_judged && (changes_little || !predicts_better(part));
+            let fails = if held_out_judge(part, evidence) {
+                changes_little || !predicts_better(part)
+            } else {
+                predicts_certainly_worse(set, part, evidence)
+            };
             let explains = || excess(&part.explanation, evidence) <= unexplained;
-            fails
+            is_judged && fails
                 || set.adds_effect_at_bound(part, evidence)
                 || set.adds_undetermined_effect(part) && explains()
                 || rests_on_passages(set, part, evidence)
@@ -62,14 +69,23 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
 /// set that is wrong in the fitted runs too, because that set has a large discrepancy already.
 pub fn predicts_better(set: &Set, other: &Set, evidence: &Evidence) -> bool {
     let none_held_out = evidence.of_role(Role::HeldOut).next().is_none();
-    let score = |own: &Explanation| log_score(own, evidence);
-    let least = match evidence.judging() {
-        Role::HeldOut => 0.0,
-        Role::Fit => -evidence.numbers.odds_of_certain().ln(),
+    let is_better = || match evidence.judging() {
+        Role::HeldOut => gain_in_score(set, other, evidence) > 0.0,
+        Role::Fit => !predicts_certainly_worse(set, other, evidence),
     };
-    none_held_out
-        || score(&set.explanation) - score(&other.with_sensors_of(set, evidence)) > least
-        || explained_share(other, set, evidence) >= evidence.numbers.certain()
+    none_held_out || is_better() || explained_share(other, set, evidence) >= evidence.numbers.certain()
+}
+
+/// True if a set predicts the held-out runs worse than another set with the same sensor errors, by the odds of a certain
+/// answer.
+fn predicts_certainly_worse(set: &Set, other: &Set, evidence: &Evidence) -> bool {
+    gain_in_score(set, other, evidence) <= -evidence.numbers.odds_of_certain().ln()
+}
+
+/// Logarithmic score of a set less that of another set with the same sensor errors.
+fn gain_in_score(set: &Set, other: &Set, evidence: &Evidence) -> f64 {
+    let score = |own: &Explanation| log_score(own, evidence);
+    score(&set.explanation) - score(&other.with_sensors_of(set, evidence))
 }
 
 /// True if a set fits the fitted runs alone: it predicts the held-out runs no better than the base model, and `other` is

@@ -282,12 +282,14 @@ impl Set {
 
     /// True if an effect that `part` lacks has a magnitude at its bound: it then imitates another effect.
     ///
-    /// With a shape parameter at its bound, an effect can imitate almost any other. This counts in two cases. Either
+    /// With a shape parameter at its bound, an effect can imitate almost any other. This counts in three cases. Either
     /// `part` already has effects, which leave little residual for a further one. Or this set leaves more than noise,
-    /// and the effect takes over the role of a parameter that `part` fits inside its range and this set at its bound.
+    /// and the effect takes over the role of a parameter that `part` fits inside its range and this set at its bound. Or
+    /// the effect explains less of the residual than a further one must.
     pub fn adds_effect_at_bound(&self, part: &Set, evidence: &Evidence) -> bool {
         let replaces_parameter = || leaves_more_than_noise(self, evidence) && self.sends_parameter_to_bound(part);
-        let has_other_causes = !part.names().is_empty() || replaces_parameter();
+        let explains_little = || explained_share(part, self, evidence) < evidence.numbers.explained();
+        let has_other_causes = !part.names().is_empty() || replaces_parameter() || explains_little();
         let is_at_bound = |own: &Placed| {
             own.unknowns.has_magnitude_at_bound(&self.explanation)
                 || has_other_causes && own.unknowns.has_parameter_at_bound(&self.explanation)

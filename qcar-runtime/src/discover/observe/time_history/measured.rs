@@ -5,6 +5,7 @@ use nalgebra::Complex;
 use super::noise::noise;
 use super::restarts::{drifts, restarts};
 use crate::campaign::{Campaign, History, Recording};
+use crate::discover::observe::run::left_out;
 use crate::discover::observe::sensor::sensors;
 use crate::discover::observe::series::{Choice, LEAST_NOISE};
 use crate::discover::observe::{Band, Evidence, Kind, Recordings, Run, Series, Spread, Stimulus, excitation_of};
@@ -14,8 +15,6 @@ use crate::model::About;
 use crate::simulate::Accuracy;
 use crate::transmissibility::{Point, signal};
 
-/// Share of a record at each end that is not compared, because the band limit of the inputs is inaccurate there.
-const ENDS: f64 = 0.02;
 /// Largest number of values of a series. Neighbours in time are similar, so more values add little information.
 const MOST_VALUES: usize = 2000;
 /// Smallest error of any calibration and any model of a real system, as a share of the RMS of the response.
@@ -140,15 +139,14 @@ impl Part {
     fn of(history: &History, recording: &Recording, is_driven: bool, choice: Choice) -> Result<Self, InputError> {
         let (rate, periodic) = (history.sample_rate, recording.periodic);
         let band = recording.band.map(|band| Band::new(band, rate));
-        let ends = if recording.band_limited && is_driven && !periodic {
-            ENDS
-        } else {
-            0.0
-        };
-        let reach = band.as_ref().filter(|_| !periodic).map_or(0, Band::half);
         let stride = band.as_ref().map_or(1, |band| band.stride(rate));
-        let cut = reach.max((ends * history.len() as f64) as usize);
-        let inside = inside(history.len(), cut, stride, choice).ok_or_else(|| too_short(history, recording, reach))?;
+        let cut = left_out(
+            band.as_ref(),
+            recording.band_limited && is_driven,
+            periodic,
+            history.len(),
+        );
+        let inside = inside(history.len(), cut, stride, choice).ok_or_else(|| too_short(history, recording, cut))?;
         Ok(Self {
             start: history.start,
             rate,
