@@ -68,7 +68,7 @@ use ranges::with_ranges_of_model;
 use reduce::reductions;
 use set::{
     Set, best_base, explained_share, held_out_judge, is_missing, keep_best, leaves_more_than_noise, most_probable,
-    predicts_worse_than_noise,
+    most_probable_first, predicts_worse_than_noise,
 };
 use verdict::conclude;
 
@@ -281,36 +281,42 @@ const BEAM: usize = 2;
 
 /// The set to extend next; `None` if no extension is worth trying. In this order:
 ///
-/// 1. the most probable set;
+/// 1. the most probable set that would be an answer (see [`may_grow`]);
 /// 2. the base model with the nuisance effects that the data show, if the most probable set leaves a significant part;
 /// 3. the next one-effect set of the beam, if something is still missing, or if more than noise is left and that set
 ///    explains most of the excess residual too.
 ///
-/// A third effect is tried only if the first two explain most of the excess residual, since otherwise the catalogue has no
-/// answer, and if they still miss a sensor. Nothing is worth trying if the most probable set lacks nothing.
+/// Nothing is worth trying if the most probable set lacks nothing.
 fn next(sets: &[Set], evidence: &Evidence) -> Option<usize> {
     let best = best(sets);
     if lacks_nothing(&sets[best], evidence) {
         return None;
     }
-    let explained = || explained_share(&sets[best_base(sets)], &sets[best], evidence);
-    let effects = sets[best].names().len();
-    let may_be_third = || explained() >= GREATER_PART && misses_a_sensor(&sets[best], evidence);
-    let may_grow = effects < 2 || effects < MOST_EFFECTS && may_be_third();
-    let is_open = !sets[best].extended && may_grow;
-    let first = is_open
-        .then_some(best)
-        .filter(|_| !needs_no_further_effect(sets, best, evidence));
+    let explained = |set: usize| explained_share(&sets[best_base(sets)], &sets[set], evidence);
+    let first = most_probable_first(sets, 0..sets.len())
+        .into_iter()
+        .find(|&set| !needs_no_further_effect(sets, set, evidence))
+        .filter(|&set| !sets[set].extended && may_grow(sets, set, evidence));
     let base =
-        || Some(best_base(sets)).filter(|&base| !sets[base].extended && explained() < evidence.numbers.certain());
+        || Some(best_base(sets)).filter(|&base| !sets[base].extended && explained(best) < evidence.numbers.certain());
     let is_worth_it = |second: usize| {
-        let explained = || explained_share(&sets[best_base(sets)], &sets[second], evidence);
         let leaves_more = leaves_more_than_noise(&sets[best], evidence);
-        is_missing(&sets[best], evidence) || leaves_more && explained() >= evidence.numbers.explained()
+        is_missing(&sets[best], evidence) || leaves_more && explained(second) >= evidence.numbers.explained()
     };
     first
         .or_else(base)
         .or_else(|| second(sets).filter(|&second| is_worth_it(second)))
+}
+
+/// True if a set may have one more effect. A third one is tried only if the first two explain most of the excess residual,
+/// since otherwise the catalogue has no answer, and if they still miss a sensor or need sensors less accurate than their
+/// data sheets: a wrong gain may be the third.
+fn may_grow(sets: &[Set], set: usize, evidence: &Evidence) -> bool {
+    let own = &sets[set];
+    let effects = own.names().len();
+    let explains = || explained_share(&sets[best_base(sets)], own, evidence) >= GREATER_PART;
+    let misses = || misses_a_sensor(own, evidence) || own.has_inaccurate_sensors();
+    effects < 2 || effects < MOST_EFFECTS && explains() && misses()
 }
 
 /// The next one-effect set to extend; `None` if the beam is full or no such set is left.
