@@ -21,6 +21,8 @@ pub struct Assembly {
     setting: Setting,
     nuisance: Nuisance,
     effects: Vec<Placed>,
+    /// Names of the links and masses that its nuisance effects added.
+    of_nuisance: Vec<String>,
     /// Parameters with the range of the model file instead of that of the campaign, with the latter.
     widened: Vec<(String, (f64, f64))>,
 }
@@ -126,6 +128,7 @@ impl Assembly {
             setting: setting.clone(),
             nuisance: Nuisance::of(evidence),
             effects: Vec::new(),
+            of_nuisance: Vec::new(),
             widened: Vec::new(),
         })
     }
@@ -182,11 +185,12 @@ impl Assembly {
         self.without_present(self.workshop.laws())
     }
 
-    /// Removes candidates whose effect and place are already in the assembly.
+    /// Removes candidates whose effect and place are already in the assembly, and those at a part that only a nuisance
+    /// effect added: they would be other forms of that effect, and no car has a part of that name.
     fn without_present(&self, candidates: Vec<Candidate>) -> Vec<Candidate> {
         let is_new = |candidate: &Candidate| {
             let is_there = |own: &Placed| own.effect == candidate.effect && own.at == candidate.at;
-            !self.effects.iter().any(is_there)
+            !self.effects.iter().any(is_there) && !self.of_nuisance.contains(&candidate.at)
         };
         candidates.into_iter().filter(is_new).collect()
     }
@@ -221,6 +225,11 @@ impl Assembly {
             Change::Model { parameters, .. } => {
                 let form = candidate.form.as_deref();
                 assembly.workshop = Arc::from(self.workshop.with(&candidate.effect, &candidate.at, form)?);
+                if candidate.nuisance {
+                    let known: Vec<&str> = parts(self.model()).collect();
+                    let new = parts(assembly.workshop.model()).filter(|name| !known.contains(name));
+                    assembly.of_nuisance.extend(new.map(str::to_owned));
+                }
                 assembly.setting.given.extend(free_parameters(parameters));
             }
             Change::Sensor { .. } => assembly.nuisance = with_suspected_sensor(&self.nuisance, candidate)?,
@@ -254,6 +263,13 @@ impl Assembly {
         }
         Some(assembly)
     }
+}
+
+/// Names of the links and masses of a model.
+fn parts(model: &dyn Model) -> impl Iterator<Item = &str> {
+    let about = model.about();
+    let links = about.links.iter().map(|link| &*link.name);
+    links.chain(about.masses.iter().map(|mass| &*mass.location))
 }
 
 /// Free parameters of an effect.
