@@ -1,14 +1,17 @@
 //! The units in which results are shown. Values inside and in JSON are in SI.
 
+use std::borrow::Cow;
 use std::str::FromStr;
 use std::sync::OnceLock;
 
-use qcar_runtime::campaign::Declared;
+use qcar_runtime::campaign::{Declared, split_ratio};
 use qcar_runtime::shown;
 use serde_json::json;
 
 /// Units of the choice `engineering`: one for each kind that engineers of ride comfort do not show in SI.
 const ENGINEERING: [&str; 5] = ["N/mm", "N s/mm", "mm", "mm/s", "g"];
+/// Ratios that have units of their own: stiffness and damping.
+const KINDS: [&str; 2] = ["N/m", "N s/m"];
 
 /// A unit for each kind of quantity that is not shown in SI.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -55,7 +58,24 @@ impl Units {
     }
 
     fn of_kind(&self, si: &str) -> Option<&ShownUnit> {
-        self.0.iter().find(|own| own.declared.is_like(si))
+        self.0.iter().find(|own| own.declared.is_of_kind(si))
+    }
+
+    /// The shown units of numerator and denominator, if a unit is the ratio of two signals, such as `(m/s^2)/N`, and
+    /// none is chosen for its own kind.
+    fn of_ratio<'a>(&'a self, si: &'a str) -> Option<[Part<'a>; 2]> {
+        // Stiffness and damping are kinds of their own: `mm` does not choose N/mm.
+        let is_kind = KINDS.iter().any(|kind| Declared::of(kind).is_some_and(|own| own.is_like(si)));
+        if is_kind || self.of_kind(si).is_some() {
+            return None;
+        }
+        let (above, below) = parts(si)?;
+        let part = |si| Part {
+            si,
+            shown: self.of_kind(si),
+        };
+        let both = [part(above), part(below)];
+        both.iter().any(|own| own.shown.is_some()).then_some(both)
     }
 
     /// The shown unit for a unit of a measured file, and the latter.
@@ -84,14 +104,57 @@ impl Units {
         )
     }
 
+    /// A value in the shown unit, and the name of that; `None` if it is shown in SI.
+    fn converted<'a>(&'a self, value: f64, si: &'a str) -> Option<(f64, Cow<'a, str>)> {
+        if let Some(own) = self.of_kind(si) {
+            return Some((own.declared.shown(value), Cow::Borrowed(&own.name)));
+        }
+        let [above, below] = self.of_ratio(si)?;
+        let name = format!("{}/{}", grouped(above.name()), grouped(below.name()));
+        Some((value * above.of_one() / below.of_one(), Cow::Owned(name)))
+    }
+
     /// The shown unit of a value in the unit `si`.
-    pub fn name<'a>(&'a self, si: &'a str) -> &'a str {
-        self.of_kind(si).map_or(si, |own| &own.name)
+    pub fn name<'a>(&'a self, si: &'a str) -> Cow<'a, str> {
+        self.converted(1.0, si).map_or(Cow::Borrowed(si), |(_, name)| name)
     }
 
     /// A value in the shown unit.
     pub fn value(&self, value: f64, si: &str) -> f64 {
-        self.of_kind(si).map_or(value, |own| own.declared.shown(value))
+        self.converted(value, si).map_or(value, |(shown, _)| shown)
+    }
+}
+
+/// Numerator or denominator of a ratio.
+struct Part<'a> {
+    si: &'a str,
+    /// Its shown unit; `None` for SI.
+    shown: Option<&'a ShownUnit>,
+}
+
+impl Part<'_> {
+    fn name(&self) -> &str {
+        self.shown.map_or(self.si, |own| &own.name)
+    }
+
+    /// The value of one SI unit in the shown unit.
+    fn of_one(&self) -> f64 {
+        self.shown.map_or(1.0, |own| own.declared.shown(1.0))
+    }
+}
+
+/// Numerator and denominator of a unit, without their parentheses.
+fn parts(unit: &str) -> Option<(&str, &str)> {
+    let (above, below) = split_ratio(unit)?;
+    let bare = |part: &'_ str| part.trim().strip_prefix('(').and_then(|part| part.strip_suffix(')'));
+    Some((bare(above).unwrap_or(above), bare(below).unwrap_or(below)))
+}
+
+/// A unit that stays one factor of a ratio.
+fn grouped(unit: &str) -> Cow<'_, str> {
+    match unit.contains(['/', ' ']) {
+        true => Cow::Owned(format!("({unit})")),
+        false => Cow::Borrowed(unit),
     }
 }
 
@@ -102,14 +165,14 @@ static CHOSEN: OnceLock<Units> = OnceLock::new();
 pub fn choose(units: Units) {
     let _ = CHOSEN.set(units);
     shown::convert_by(|value, si| {
-        let own = CHOSEN.get()?.of_kind(si)?;
-        Some((own.declared.shown(value), &own.name))
+        let (shown, name) = CHOSEN.get()?.converted(value, si)?;
+        Some((shown, name.into_owned()))
     });
 }
 
 /// The shown unit of a value in `si`: SI without a choice.
-pub fn name(si: &str) -> &str {
-    CHOSEN.get().map_or(si, |units| units.name(si))
+pub fn name(si: &str) -> Cow<'_, str> {
+    CHOSEN.get().map_or(Cow::Borrowed(si), |units| units.name(si))
 }
 
 /// A value in SI, converted to the shown unit.
@@ -127,7 +190,7 @@ pub fn of_file(value: f64, unit: &str) -> (f64, &str) {
 
 /// A text with its shown unit; a pure number has none.
 pub fn with_unit(shown: &str, si: &str) -> String {
-    match name(si) {
+    match &*name(si) {
         "1" | "" => shown.into(),
         unit => format!("{shown} {unit}"),
     }
@@ -140,7 +203,7 @@ pub fn script() -> String {
 
 /// A column heading with its shown unit in brackets; a pure number has none.
 pub fn heading(what: &str, si: &str) -> String {
-    match name(si) {
+    match &*name(si) {
         "1" | "" => what.into(),
         unit => format!("{what} [{unit}]"),
     }
@@ -158,11 +221,29 @@ mod tests {
         assert_eq!((units.name("N s/m"), units.value(1500.0, "N s/m")), ("N s/m", 1500.0));
         assert_eq!(units.name("1"), "1");
         let engineering: Units = "engineering".parse().unwrap();
+        for (si, shown, size) in [
+            ("(m/s^2)/N", "g/N", 1.0 / 9.80665),
+            ("(m/s)/N", "(mm/s)/N", 1e3),
+            ("N/(m/s^2)", "N/g", 9.80665),
+            ("rad/m", "rad/mm", 1e-3),
+        ] {
+            assert_eq!(engineering.name(si), shown);
+            assert!((engineering.value(1.0, si) / size - 1.0).abs() < 1e-12, "{si}");
+        }
+        assert_eq!(units.name("N/(m/s)"), "N/(m/s)");
         assert_eq!(
             (engineering.name("N s/m"), engineering.value(1500.0, "N s/m")),
             ("N s/mm", 1.5)
         );
         assert_eq!("si".parse::<Units>(), Ok(Units::default()));
+    }
+
+    #[test]
+    fn a_unit_of_angles_is_not_that_of_other_numbers() {
+        let units: Units = "deg,rpm".parse().unwrap();
+        assert_eq!((units.name("rad"), units.name("rad/s")), ("deg".into(), "rpm".into()));
+        assert_eq!((units.name("1"), units.name("1/s")), ("1".into(), "1/s".into()));
+        assert_eq!(units.value(0.5, "1"), 0.5);
     }
 
     #[test]

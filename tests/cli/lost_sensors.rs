@@ -37,7 +37,7 @@ fn a_misspelt_place_of_a_cleat_run_is_no_missing_output() {
     );
     assert!(!said.contains("output whel"), "{said}");
     assert!(
-        said.contains("the model has no `whel` along z; that sensor is left out; did you mean `wheel`?"),
+        said.contains("model `axle_a` gives no acceleration of `whel` along z, so that sensor is left out; did you mean `wheel`?"),
         "{said}"
     );
 }
@@ -59,7 +59,7 @@ fn a_recorded_input_that_the_model_lacks_is_named_by_a_replay() {
     fs::write(&manifest, text.replace("location = \"f\"", "location = \"push\"")).unwrap();
     let said = succeeds(&["simulate", path]);
     assert!(
-        said.contains("the model has no `push` along z; that sensor is left out"),
+        said.contains("model `one_mass` gives no force of `push` along z, so that sensor is left out"),
         "{said}"
     );
     let checked = succeeds(&["check", path]);
@@ -148,7 +148,7 @@ fn an_angle_is_no_displacement() {
         let said = [
             "campaign.toml, `channel z`",
             "`pitch` in m/s^2",
-            "1/s^2",
+            "one in rad/s^2",
             "write `unit = \"rad/s^2\"`",
             "remove the channel",
         ];

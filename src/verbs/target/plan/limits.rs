@@ -127,7 +127,7 @@ impl<'a> Planner<'a, '_> {
                     .position(|own| own == reading)
                     .expect("all are measured");
                 let metric = &self.ground.metrics()[reading.metric];
-                let (name, unit) = (metric.name.clone(), metric.unit);
+                let (name, unit) = (metric.name.clone(), &*metric.unit);
                 let run = reading.course.map(|run| self.ground.courses()[run].name.clone());
                 let sides = [
                     (&target.at_most, Sense::AtMost, "target.at_most"),
