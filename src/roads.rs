@@ -167,7 +167,10 @@ impl RequestedRoad {
         match &self.ground {
             Ground::Random(class, seed) => {
                 let course = Course::random(*class, *seed, self.speed, self.duration);
-                course.map_err(|error| self.problem(error.to_string(), &error.expected(), error.remedy()).into())
+                course.map_err(|error| {
+                    self.problem(error.to_string(), &error.expected(), error.remedy())
+                        .into()
+                })
             }
             Ground::Measured(file, source) => self.along(file, source.as_deref()),
         }

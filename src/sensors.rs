@@ -15,7 +15,10 @@ pub fn unknown(about: &About, campaign: &Campaign) -> Vec<String> {
         .filter(|own| !points(own).any(|point| is_known(about, &point)));
     let say = |own: &Channel| {
         let [what, remedy] = missing(about, &Point::of(own));
-        format!("channel `{}`: {what}, so nothing is compared with it; {remedy}", own.name)
+        format!(
+            "channel `{}`: {what}, so nothing is compared with it; {remedy}",
+            own.name
+        )
     };
     unknown.map(say).collect()
 }

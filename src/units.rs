@@ -4,13 +4,15 @@ use std::borrow::Cow;
 use std::str::FromStr;
 use std::sync::OnceLock;
 
-use qcar_runtime::campaign::{Declared, split_ratio};
+use qcar_runtime::campaign::{Declared, dimension, split_ratio};
 use qcar_runtime::shown;
 use serde_json::json;
 
 /// Units of the choice `engineering`: one for each kind that engineers of ride comfort do not show in SI.
 const ENGINEERING: [&str; 5] = ["N/mm", "N s/mm", "mm", "mm/s", "g"];
-/// Ratios that have units of their own: stiffness and damping.
+/// Units of measured signals.
+const SIGNALS: [&str; 8] = ["m", "m/s", "m/s^2", "rad", "rad/s", "rad/s^2", "N", "N m"];
+/// Ratios of signals that are kinds of their own, so that `mm` does not choose N/mm: stiffness and damping.
 const KINDS: [&str; 2] = ["N/m", "N s/m"];
 
 /// A unit for each kind of quantity that is not shown in SI.
@@ -64,12 +66,11 @@ impl Units {
     /// The shown units of numerator and denominator, if a unit is the ratio of two signals, such as `(m/s^2)/N`, and
     /// none is chosen for its own kind.
     fn of_ratio<'a>(&'a self, si: &'a str) -> Option<[Part<'a>; 2]> {
-        // Stiffness and damping are kinds of their own: `mm` does not choose N/mm.
-        let is_kind = KINDS.iter().any(|kind| Declared::of(kind).is_some_and(|own| own.is_like(si)));
-        if is_kind || self.of_kind(si).is_some() {
+        let is_kind = KINDS.iter().any(|kind| dimension(kind) == dimension(si));
+        let (above, below) = parts(si).filter(|_| !is_kind)?;
+        if ![above, below].iter().all(|part| SIGNALS.contains(part)) {
             return None;
         }
-        let (above, below) = parts(si)?;
         let part = |si| Part {
             si,
             shown: self.of_kind(si),
@@ -107,7 +108,7 @@ impl Units {
     /// A value in the shown unit, and the name of that; `None` if it is shown in SI.
     fn converted<'a>(&'a self, value: f64, si: &'a str) -> Option<(f64, Cow<'a, str>)> {
         if let Some(own) = self.of_kind(si) {
-            return Some((own.declared.shown(value), Cow::Borrowed(&own.name)));
+            return Some((own.declared.shown(value), Cow::Borrowed(own.name.as_str())));
         }
         let [above, below] = self.of_ratio(si)?;
         let name = format!("{}/{}", grouped(above.name()), grouped(below.name()));
@@ -146,8 +147,12 @@ impl Part<'_> {
 /// Numerator and denominator of a unit, without their parentheses.
 fn parts(unit: &str) -> Option<(&str, &str)> {
     let (above, below) = split_ratio(unit)?;
-    let bare = |part: &'_ str| part.trim().strip_prefix('(').and_then(|part| part.strip_suffix(')'));
-    Some((bare(above).unwrap_or(above), bare(below).unwrap_or(below)))
+    Some((bare(above), bare(below)))
+}
+
+fn bare(part: &str) -> &str {
+    let inner = part.strip_prefix('(').and_then(|part| part.strip_suffix(')'));
+    inner.unwrap_or(part)
 }
 
 /// A unit that stays one factor of a ratio.
@@ -216,9 +221,12 @@ mod tests {
     #[test]
     fn a_kind_is_shown_in_the_unit_that_was_chosen_for_it() {
         let units: Units = "N/mm, mm,g".parse().unwrap();
-        assert_eq!((units.name("N/m"), units.value(25e3, "N/m")), ("N/mm", 25.0));
-        assert_eq!((units.name("m/s^2"), units.value(9.80665, "m/s^2")), ("g", 1.0));
-        assert_eq!((units.name("N s/m"), units.value(1500.0, "N s/m")), ("N s/m", 1500.0));
+        assert_eq!((units.name("N/m"), units.value(25e3, "N/m")), ("N/mm".into(), 25.0));
+        assert_eq!((units.name("m/s^2"), units.value(9.80665, "m/s^2")), ("g".into(), 1.0));
+        assert_eq!(
+            (units.name("N s/m"), units.value(1500.0, "N s/m")),
+            ("N s/m".into(), 1500.0)
+        );
         assert_eq!(units.name("1"), "1");
         let engineering: Units = "engineering".parse().unwrap();
         for (si, shown, size) in [
@@ -230,10 +238,12 @@ mod tests {
             assert_eq!(engineering.name(si), shown);
             assert!((engineering.value(1.0, si) / size - 1.0).abs() < 1e-12, "{si}");
         }
-        assert_eq!(units.name("N/(m/s)"), "N/(m/s)");
+        for unit in ["N/(m/s)", "m/s", "kg/m", "1/m"] {
+            assert_eq!(units.name(unit), unit);
+        }
         assert_eq!(
             (engineering.name("N s/m"), engineering.value(1500.0, "N s/m")),
-            ("N s/mm", 1.5)
+            ("N s/mm".into(), 1.5)
         );
         assert_eq!("si".parse::<Units>(), Ok(Units::default()));
     }

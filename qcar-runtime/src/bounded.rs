@@ -96,7 +96,10 @@ pub fn text(path: &Path) -> io::Result<String> {
         let (before, wrong) = error.as_bytes().split_at(place);
         let line = 1 + before.iter().filter(|byte| **byte == b'\n').count();
         let column = 1 + before.iter().rev().take_while(|byte| **byte != b'\n').count();
-        let message = format!("the byte 0x{:02X} in line {line} at byte {column}, which is not UTF-8", wrong[0]);
+        let message = format!(
+            "the byte 0x{:02X} in line {line} at byte {column}, which is not UTF-8",
+            wrong[0]
+        );
         io::Error::new(ErrorKind::InvalidData, message)
     })
 }

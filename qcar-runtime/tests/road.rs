@@ -232,10 +232,7 @@ fn roads_that_make_no_sense_are_refused() {
             Road::from_samples(&with(100, -1.0), &flat, &flat),
             "x that falls from 0 m to -1 m at sample 100",
         ),
-        (
-            Road::from_samples(&flat, &flat, &flat),
-            "all points at x = 0 m",
-        ),
+        (Road::from_samples(&flat, &flat, &flat), "all points at x = 0 m"),
         (
             Road::from_samples(&ramp, &with(50, 0.05), &flat),
             "where the heights rise by",
@@ -254,10 +251,7 @@ fn roads_that_make_no_sense_are_refused() {
             ),
             "height of the plank of 0 m",
         ),
-        (
-            Road::from_shape(&CLEAT, -1.0),
-            "run-in of -1 m",
-        ),
+        (Road::from_shape(&CLEAT, -1.0), "run-in of -1 m"),
         (
             Road::from_random(&Random {
                 class: Class::A,

@@ -324,7 +324,9 @@ mod tests {
 
     #[test]
     fn nonsense_is_refused() {
-        for text in ["", "1:2", "0:10:5", "10:1:5", "1:2:0", "a:2:3", "1:inf:3", "1:2:-1", "1:30:1"] {
+        for text in [
+            "", "1:2", "0:10:5", "10:1:5", "1:2:0", "a:2:3", "1:inf:3", "1:2:-1", "1:30:1",
+        ] {
             assert!(text.parse::<Frequencies>().is_err(), "{text}");
         }
     }

@@ -105,7 +105,12 @@ fn must_be_new(folder: &Path) -> Result<(), Failure> {
 /// # Errors
 /// Fails if two paths are those of one file, whose runs would have one name.
 fn each_once(files: &[PathBuf]) -> Result<(), Failure> {
-    let same = |a: &Path, b: &Path| a == b || a.canonicalize().ok().is_some_and(|a| b.canonicalize().is_ok_and(|b| a == b));
+    let same = |a: &Path, b: &Path| {
+        a == b
+            || a.canonicalize()
+                .ok()
+                .is_some_and(|a| b.canonicalize().is_ok_and(|b| a == b))
+    };
     let twice = files
         .iter()
         .enumerate()

@@ -249,7 +249,11 @@ fn list(ground: &Ground<'_>) -> String {
     }
     let mut table = Table::new(["metric", "unit", "meaning"]);
     for metric in ground.metrics() {
-        table.row(vec![metric.name.clone(), units::name(&metric.unit).into(), metric.doc.clone()]);
+        table.row(vec![
+            metric.name.clone(),
+            units::name(&metric.unit).into(),
+            metric.doc.clone(),
+        ]);
     }
     table.text()
 }

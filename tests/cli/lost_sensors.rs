@@ -37,7 +37,9 @@ fn a_misspelt_place_of_a_cleat_run_is_no_missing_output() {
     );
     assert!(!said.contains("output whel"), "{said}");
     assert!(
-        said.contains("model `axle_a` gives no acceleration of `whel` along z, so that sensor is left out; did you mean `wheel`?"),
+        said.contains(
+            "model `axle_a` gives no acceleration of `whel` along z, so that sensor is left out; did you mean `wheel`?"
+        ),
         "{said}"
     );
 }

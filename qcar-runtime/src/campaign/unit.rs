@@ -238,7 +238,15 @@ mod tests {
     fn spellings_of_one_unit_agree() {
         let damping = dimension("N s/m");
         assert_eq!(damping, Some([1, 0, -1]));
-        for spelling in ["(kg m/s^2)/(m/s)", "N*s/m", "N·s/m", "N s / m", "N/(m/s)", "kg/s", "s N/m"] {
+        for spelling in [
+            "(kg m/s^2)/(m/s)",
+            "N*s/m",
+            "N·s/m",
+            "N s / m",
+            "N/(m/s)",
+            "kg/s",
+            "s N/m",
+        ] {
             assert_eq!(dimension(spelling), damping, "{spelling}");
         }
         assert_eq!(dimension("m/s^2"), Some([0, 1, -2]));
