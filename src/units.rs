@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::str::FromStr;
 use std::sync::OnceLock;
 
-use qcar_runtime::campaign::{Declared, dimension, split_ratio};
+use qcar_runtime::campaign::{Declared, dimension};
 use qcar_runtime::shown;
 use serde_json::json;
 
@@ -24,6 +24,8 @@ pub struct Units(Vec<ShownUnit>);
 struct ShownUnit {
     name: String,
     declared: Declared,
+    /// The coherent unit; of an angle, `rad` or one of its rates.
+    si: String,
 }
 
 impl FromStr for Units {
@@ -45,7 +47,8 @@ impl Units {
             let declared = Declared::of(name).ok_or_else(|| {
                 format!("expected `si`, `engineering` or units such as N/mm,mm,g, found `{name}`; write each unit once")
             })?;
-            if let Some(twice) = units.of_kind(&declared.coherent) {
+            let si = coherent(&declared);
+            if let Some(twice) = units.of_kind(&si) {
                 return Err(format!(
                     "`{name}` and `{}` are of the same kind; leave one of them out",
                     twice.name
@@ -54,13 +57,16 @@ impl Units {
             units.0.push(ShownUnit {
                 name: name.into(),
                 declared,
+                si,
             });
         }
         Ok(units)
     }
 
     fn of_kind(&self, si: &str) -> Option<&ShownUnit> {
-        self.0.iter().find(|own| own.declared.is_of_kind(si))
+        // The radian is 1, but no other number without dimension is an angle.
+        let is_like = |own: &&ShownUnit| own.declared.is_like(si) && counts_angles(&own.si) == counts_angles(si);
+        self.0.iter().find(is_like)
     }
 
     /// The shown units of numerator and denominator, if a unit is the ratio of two signals, such as `(m/s^2)/N`, and
@@ -82,7 +88,7 @@ impl Units {
     /// The shown unit for a unit of a measured file, and the latter.
     fn of_file(&self, unit: &str) -> Option<(&ShownUnit, Declared)> {
         let declared = Declared::of(unit)?;
-        Some((self.of_kind(&declared.coherent)?, declared))
+        Some((self.of_kind(&coherent(&declared))?, declared))
     }
 
     /// Script that passes these units to a page.
@@ -90,12 +96,7 @@ impl Units {
         if self.0.is_empty() {
             return "view.units = 'si';".into();
         }
-        let scale = |own: &ShownUnit| {
-            (
-                own.declared.coherent.clone(),
-                json!([own.declared.shown(1.0), own.name]),
-            )
-        };
+        let scale = |own: &ShownUnit| (own.si.clone(), json!([own.declared.shown(1.0), own.name]));
         let scales: serde_json::Map<_, _> = self.0.iter().map(scale).collect();
         let names: Vec<&str> = self.0.iter().map(|own| own.name.as_str()).collect();
         let system = json!({ "name": names.join(", "), "scales": scales });
@@ -144,10 +145,31 @@ impl Part<'_> {
     }
 }
 
-/// Numerator and denominator of a unit, without their parentheses.
+/// The coherent unit of a declared one; of an angle, `rad` or one of its rates.
+fn coherent(of: &Declared) -> String {
+    let rates = dimension(&of.coherent).filter(|_| counts_angles(&of.written));
+    match rates {
+        Some([0, 0, 0]) => "rad".into(),
+        Some([0, 0, -1]) => "rad/s".into(),
+        Some([0, 0, -2]) => "rad/s^2".into(),
+        _ => of.coherent.clone(),
+    }
+}
+
+/// True for an angle and its rates, such as `rad/s` or `deg`.
+fn counts_angles(unit: &str) -> bool {
+    ["rad", "deg", "°", "rpm"].iter().any(|symbol| unit.starts_with(symbol)) || unit.starts_with("mrad")
+}
+
+/// Numerator and denominator of a unit, without their parentheses: what stands before and after the first `/` outside
+/// parentheses.
 fn parts(unit: &str) -> Option<(&str, &str)> {
-    let (above, below) = split_ratio(unit)?;
-    Some((bare(above), bare(below)))
+    let mut depth = 0;
+    let at = unit.find(|c| {
+        depth += i32::from(c == '(') - i32::from(c == ')');
+        c == '/' && depth == 0
+    })?;
+    Some((bare(&unit[..at]), bare(&unit[at + 1..])))
 }
 
 fn bare(part: &str) -> &str {

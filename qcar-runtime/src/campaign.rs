@@ -50,4 +50,4 @@ pub use finding::Finding;
 pub use history::History;
 pub use profile::RoadSamples;
 pub use truth::{Effect, Truth};
-pub use unit::{Declared, Dimension, dimension, examples, split_ratio};
+pub use unit::{Declared, Dimension, dimension, examples};
