@@ -44,6 +44,36 @@ fn a_misspelt_place_of_a_cleat_run_is_no_missing_output() {
     );
 }
 
+/// Two masses, of which only the upper one is an output.
+const HALF_SHOWN: &str = "axle half_shown {\n    \"A mass on a mass\"\n    param k: N/m = 800 in 1..1e4;\n    \
+    direction z {\n        mass body = 1 kg; mass upper = 1 kg; force f on body;\n        \
+    link spring: body { spring k; damper 3 N s/m; }\n        \
+    link top: upper - body { spring 700 N/m; damper 3 N s/m; }\n        output upper.acceleration;\n    }\n}\n";
+
+#[test]
+fn a_mass_without_an_output_is_no_missing_mass() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().to_str().unwrap();
+    fs::write(folder.path().join("half_shown.axle"), HALF_SHOWN).unwrap();
+    let parameters = parameter("k", 800.0, "N/m", "range = [1.0, 2000.0]\n");
+    campaign(
+        folder.path(),
+        "./half_shown.axle",
+        &parameters,
+        "band_limited = false",
+        &[&pushed()],
+    );
+    let said = [
+        "model `half_shown` gives no displacement of `body` along z",
+        "add `output body.position;` to the model",
+    ];
+    for verb in ["fit", "discover"] {
+        refused(&qcar(&[verb, path]), &said);
+    }
+    let checked = succeeds(&["check", path]);
+    assert!(said.iter().all(|said| checked.contains(said)), "{checked}");
+}
+
 #[test]
 fn a_recorded_input_that_the_model_lacks_is_named_by_a_replay() {
     let folder = tempfile::tempdir().unwrap();
