@@ -177,7 +177,7 @@ fn first_difference<'a>(key: String, there: &'a Value, own: &'a Value) -> (Strin
         (Value::Object(there), Value::Object(own)) => {
             let missing = there.iter().find(|(name, _)| !own.contains_key(*name));
             let missing = missing.map(|(name, value)| (format!("{key}.{name}"), value, &Value::Null));
-            let differing = own.iter().find(|(name, value)| there.get(*name) != Some(value));
+            let differing = own.iter().find(|(name, value)| there.get(*name) != Some(*value));
             let differing = differing
                 .map(|(name, value)| (format!("{key}.{name}"), there.get(name).unwrap_or(&Value::Null), value));
             differing.or(missing)

@@ -187,7 +187,7 @@ fn result(
         .map(rounded);
     MetricResult {
         name: own.name.clone(),
-        unit: own.unit,
+        unit: own.unit.clone(),
         doc: own.doc.clone(),
         value,
         values: range.clone().map(|at| (run(at), local.values[at])).collect(),
