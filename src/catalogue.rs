@@ -16,6 +16,7 @@ use qcar_machine::Machine;
 use qcar_runtime::campaign::Campaign;
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::model::Model;
+use qcar_runtime::spelling;
 
 use crate::failure::{Failure, flag};
 use crate::files::read_text;
@@ -85,11 +86,6 @@ pub fn is_shipped(model: &str) -> bool {
     models::find(model).is_some()
 }
 
-/// These names as a list, for messages.
-fn listed() -> String {
-    names().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
-}
-
 /// A model that can run.
 ///
 /// # Errors
@@ -154,11 +150,11 @@ pub fn compiled_of_campaign(campaign: &Campaign, model: Option<&str>, wanted: Wa
 pub fn named_by(campaign: &Campaign, wanted: Option<&str>) -> Result<String, Failure> {
     if wanted.is_none() && models::find(&campaign.model).is_none() && !looks_like_a_path(&campaign.model) {
         let (place, found) = (Place::Name("model".into()), format!("`{}`", campaign.model));
-        let remedy = format!(
-            "choose among {}, or give a model file, such as `model = \"{}.axle\"`, relative to the folder of the campaign",
-            listed(),
+        let file = format!(
+            "give a model file, such as `model = \"{}.axle\"`, relative to the folder of the campaign",
             campaign.model
         );
+        let remedy = spelling::choice_or(&campaign.model, names().collect::<Vec<_>>(), &file);
         return Err(Problem::new(
             campaign.manifest(),
             place,
@@ -213,13 +209,19 @@ pub fn compile(model: &str, wanted: Wanted) -> Result<Result<Compiled, Report>, 
     match models::find(model) {
         Some(shipped) => Ok(compile_shipped(shipped, wanted)),
         None if looks_like_a_path(model) => {
-            let from_disk = compile_file_wanted(Path::new(""), model, wanted).map_err(|reason| {
-                let remedy = "correct the path, put the file there, or save it as UTF-8";
-                Problem::new(Path::new(model), Place::File, reason, "a model file", remedy)
-            })?;
-            Ok(from_disk.compiled)
+            let from_disk = compile_file_wanted(Path::new(""), model, wanted);
+            Ok(from_disk.map_err(|reason| unreadable(model, reason))?.compiled)
         }
         None => Err(unknown(model).into()),
+    }
+}
+
+/// Why a model file cannot be read.
+fn unreadable(model: &str, reason: String) -> InputError {
+    let remedy = "correct the path, or put the file there";
+    match read_text(Path::new(model)) {
+        Err(problem) => problem,
+        Ok(_) => Problem::new(Path::new(model), Place::File, reason, "a model file", remedy).into(),
     }
 }
 
@@ -261,7 +263,7 @@ pub fn looks_like_a_path(name: &str) -> bool {
 }
 
 fn unknown(model: &str) -> Problem {
-    let remedy = format!("choose among {}, or give the path of a file", listed());
+    let remedy = spelling::choice_or(model, names().collect::<Vec<_>>(), "give the path of a file");
     flag(
         "MODEL",
         format!("`{model}`"),

@@ -8,6 +8,7 @@ use qcar_dsl::parse::parse_text;
 use qcar_dsl::patch::Patch;
 use qcar_dsl::source::Source;
 use qcar_dsl::syntax::Item;
+use qcar_runtime::spelling;
 
 use crate::catalogue::looks_like_a_path;
 use crate::failure::{Failure, flag};
@@ -52,10 +53,10 @@ pub fn find(effect: &str, form: Option<&str>) -> Result<Patch, Failure> {
     let patch = named(effect)?;
     let Some(form) = form else { return Ok(patch) };
     patch.in_form(form).ok_or_else(|| {
-        let names: Vec<String> = patch.forms().map(|form| format!("`{form}`")).collect();
-        let remedy = match names.as_slice() {
-            [] => format!("leave --form out: `{effect}` has only one"),
-            _ => format!("choose among {}", names.join(", ")),
+        let names: Vec<_> = patch.forms().collect();
+        let remedy = match names.is_empty() {
+            true => format!("leave --form out: `{effect}` has only one"),
+            false => spelling::choice(form, names.iter().copied()),
         };
         let expected = format!("a form of `{effect}`");
         flag("--form", format!("`{form}`"), &expected, &remedy).into()
@@ -97,11 +98,8 @@ fn named(effect: &str) -> Result<Patch, Failure> {
     if looks_like_a_path(effect) {
         return read(effect, &read_text(Path::new(effect))?);
     }
-    let names: Vec<String> = models::effects()
-        .iter()
-        .map(|shipped| format!("`{}`", shipped.name))
-        .collect();
-    let remedy = format!("choose among {}, or give the path of a file", names.join(", "));
+    let names = models::effects().iter().map(|shipped| shipped.name);
+    let remedy = spelling::choice_or(effect, names, "give the path of a file");
     Err(flag(
         "EFFECT",
         format!("`{effect}`"),

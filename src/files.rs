@@ -1,5 +1,6 @@
 //! Files to read and to write.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::{fs, process};
@@ -15,7 +16,10 @@ use crate::failure::{Failure, flag};
 /// Fails if the file is missing, a folder, or not UTF-8.
 pub fn read_text(file: &Path) -> Result<String, InputError> {
     bounded::text(file).map_err(|error| {
-        let remedy = "correct the path, or put the file there";
+        let remedy = match error.kind() {
+            ErrorKind::InvalidData => "save the file as UTF-8",
+            _ => "correct the path, or put the file there",
+        };
         Problem::new(file, Place::File, error.to_string(), "a readable text file", remedy).into()
     })
 }

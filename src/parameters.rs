@@ -5,6 +5,7 @@ mod file;
 // Values in the results of a fit.
 mod fitted;
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -272,8 +273,11 @@ pub fn require_in_range(about: &About, settings: &[Setting]) -> Result<(), Input
 /// A value in the SI unit `si`, or the ends of a range, with the unit, as messages show them: in the unit in which the
 /// user wrote a value, otherwise in the shown one.
 pub fn quoted(values: &[f64], si: &str, written: Option<&Declared>) -> String {
-    let (unit, numbers): (&str, Vec<f64>) = match written {
-        Some(own) => (&own.written, values.iter().map(|value| own.shown(*value)).collect()),
+    let (unit, numbers): (Cow<'_, str>, Vec<f64>) = match written {
+        Some(own) => (
+            own.written.as_str().into(),
+            values.iter().map(|value| own.shown(*value)).collect(),
+        ),
         None => (
             units::name(si),
             values.iter().map(|value| units::value(*value, si)).collect(),
@@ -283,7 +287,7 @@ pub fn quoted(values: &[f64], si: &str, written: Option<&Declared>) -> String {
         .into_iter()
         .map(|number| six_digits(number).to_string())
         .collect();
-    match unit {
+    match &*unit {
         "1" | "" => numbers.join(" to "),
         unit => format!("{} {unit}", numbers.join(" to ")),
     }

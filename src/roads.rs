@@ -54,8 +54,6 @@ const CLASSES: [(&str, Class); 8] = [
 const SPEEDS: RangeInclusive<f64> = 0.5..=100.0;
 /// Shortest ride, s: about one oscillation of the body, with spectral lines at each hertz.
 const SHORTEST: f64 = 1.0;
-/// Requirement for a road.
-const DRIVABLE: &str = "heights on which a tyre can roll";
 /// Longest ride, s: a road of ISO 8608 is a sum of sines, and a record is kept in memory.
 const LONGEST: f64 = 600.0;
 /// Durations of a ride, s.
@@ -71,12 +69,10 @@ impl FromStr for RequestedRoad {
             Some((speed, duration)) => (speed, Some(duration)),
             None => (driven, None),
         };
-        let quantity = |text: &str, unit: &str| Declared::quantity(text).filter(|(_, own)| own.is_like(unit));
-        let speed = quantity(speed, "m/s").ok_or_else(expected)?.0;
+        let speed = quantity(speed, "m/s").ok_or_else(expected)?;
         let duration = duration
             .map(|text| quantity(text, "s").ok_or_else(expected))
             .transpose()?;
-        let duration = duration.map(|(duration, _)| duration);
         Ok(Self {
             written: text.into(),
             ground: Ground::of(ground.trim()).ok_or_else(expected)?,
@@ -85,6 +81,35 @@ impl FromStr for RequestedRoad {
             file: None,
         })
     }
+}
+
+/// The SI value of a number with a unit of the kind of `unit`.
+pub fn quantity(text: &str, unit: &str) -> Option<f64> {
+    let (value, _) = Declared::quantity(text).filter(|(_, own)| own.is_like(unit))?;
+    Some(value)
+}
+
+/// Checks the speed (m/s) of a ride; `problem` makes one of what was found, what was expected and the remedy.
+///
+/// # Errors
+/// Fails if no ride is so slow or so fast.
+pub fn check_speed(speed: f64, problem: impl FnOnce(String, &str, &str) -> Problem) -> Result<(), InputError> {
+    within(("speed", speed), &SPEEDS, "m/s", problem)
+}
+
+fn within(
+    (what, value): (&str, f64),
+    range: &RangeInclusive<f64>,
+    si: &str,
+    problem: impl FnOnce(String, &str, &str) -> Problem,
+) -> Result<(), InputError> {
+    if range.contains(&value) {
+        return Ok(());
+    }
+    let (least, most) = (shown(*range.start(), si), shown(*range.end(), si));
+    let expected = format!("at least {least} and at most {most}");
+    let remedy = format!("write another {what}");
+    Err(problem(format!("a {what} of {}", shown(value, si)), &expected, &remedy).into())
 }
 
 impl Ground {
@@ -125,19 +150,10 @@ impl RequestedRoad {
 
     /// Speed and duration are checked here, not where the text is read: the units of messages are known now.
     fn check(&self) -> Result<(), InputError> {
-        let within = |(what, value): (&str, f64), range: &RangeInclusive<f64>, si: &str| {
-            if range.contains(&value) {
-                return Ok(());
-            }
-            let (least, most) = (shown(*range.start(), si), shown(*range.end(), si));
-            let expected = format!("at least {least} and at most {most}");
-            let remedy = format!("write another {what}");
-            let problem = self.problem(format!("a {what} of {}", shown(value, si)), &expected, &remedy);
-            Err(InputError::from(problem))
-        };
-        within(("speed", self.speed), &SPEEDS, "m/s")?;
+        let problem = |found: String, expected: &str, remedy: &str| self.problem(found, expected, remedy);
+        check_speed(self.speed, problem)?;
         match self.duration {
-            Some(duration) => within(("duration", duration), &DURATIONS, "s"),
+            Some(duration) => within(("duration", duration), &DURATIONS, "s", problem),
             None => Ok(()),
         }
     }
@@ -151,7 +167,10 @@ impl RequestedRoad {
         match &self.ground {
             Ground::Random(class, seed) => {
                 let course = Course::random(*class, *seed, self.speed, self.duration);
-                course.map_err(|error| self.problem(error.to_string(), DRIVABLE, error.remedy()).into())
+                course.map_err(|error| {
+                    self.problem(error.to_string(), &error.expected(), error.remedy())
+                        .into()
+                })
             }
             Ground::Measured(file, source) => self.along(file, source.as_deref()),
         }
@@ -199,7 +218,7 @@ pub fn courses(roads: &[RequestedRoad], beside: &[Course]) -> Result<Vec<Course>
 }
 
 fn no_road(file: &Path, error: &RoadError) -> InputError {
-    Problem::new(file, Place::File, error.to_string(), DRIVABLE, error.remedy()).into()
+    Problem::new(file, Place::File, error.to_string(), error.expected(), error.remedy()).into()
 }
 
 /// A name that may be part of a file name.

@@ -1,7 +1,7 @@
 //! Sensors of a campaign that do not measure what a model has.
 
 use qcar_runtime::campaign::{Campaign, Channel, Side, dimension};
-use qcar_runtime::discover::observe::{excitation_of, is_known, nearest_place, order_of, signal_of};
+use qcar_runtime::discover::observe::{excitation_of, is_known, missing, order_of, signal_of};
 use qcar_runtime::error::{Place, Problem};
 use qcar_runtime::model::{About, InputKind, Quantity};
 use qcar_runtime::response::signal::output_of;
@@ -14,19 +14,10 @@ pub fn unknown(about: &About, campaign: &Campaign) -> Vec<String> {
         .iter()
         .filter(|own| !points(own).any(|point| is_known(about, &point)));
     let say = |own: &Channel| {
-        let (location, quantity, axis) = (&own.location, own.quantity.name(), own.axis.name());
-        let (channel, model) = (&own.name, &about.name);
-        let point = Point::of(own);
-        let remedy = match nearest_place(about, &point) {
-            Some(nearest) => format!("did you mean `{nearest}`?"),
-            None => format!(
-                "if it should, add `output {location}.{};` to the model",
-                point.kind(about).word()
-            ),
-        };
+        let [what, remedy] = missing(about, &Point::of(own));
         format!(
-            "channel `{channel}`: model `{model}` gives no {quantity} of `{location}` along {axis}, so nothing is compared with \
-             it; {remedy}"
+            "channel `{}`: {what}, so nothing is compared with it; {remedy}",
+            own.name
         )
     };
     unknown.map(say).collect()

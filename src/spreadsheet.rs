@@ -1,5 +1,6 @@
 //! Workbooks of Excel; equal content gives equal bytes.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use qcar_runtime::error::{InputError, Place, Problem};
@@ -112,6 +113,12 @@ pub enum Cell {
 impl From<&str> for Cell {
     fn from(text: &str) -> Self {
         Cell::Text(text.into())
+    }
+}
+
+impl From<Cow<'_, str>> for Cell {
+    fn from(text: Cow<'_, str>) -> Self {
+        Cell::from(&*text)
     }
 }
 

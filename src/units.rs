@@ -1,14 +1,19 @@
 //! The units in which results are shown. Values inside and in JSON are in SI.
 
+use std::borrow::Cow;
 use std::str::FromStr;
 use std::sync::OnceLock;
 
-use qcar_runtime::campaign::Declared;
+use qcar_runtime::campaign::{Declared, dimension};
 use qcar_runtime::shown;
 use serde_json::json;
 
 /// Units of the choice `engineering`: one for each kind that engineers of ride comfort do not show in SI.
 const ENGINEERING: [&str; 5] = ["N/mm", "N s/mm", "mm", "mm/s", "g"];
+/// Units of measured signals.
+const SIGNALS: [&str; 8] = ["m", "m/s", "m/s^2", "rad", "rad/s", "rad/s^2", "N", "N m"];
+/// Ratios of signals that are kinds of their own, so that `mm` does not choose N/mm: stiffness and damping.
+const KINDS: [&str; 2] = ["N/m", "N s/m"];
 
 /// A unit for each kind of quantity that is not shown in SI.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -19,6 +24,8 @@ pub struct Units(Vec<ShownUnit>);
 struct ShownUnit {
     name: String,
     declared: Declared,
+    /// The coherent unit; of an angle, `rad` or one of its rates.
+    si: String,
 }
 
 impl FromStr for Units {
@@ -40,7 +47,8 @@ impl Units {
             let declared = Declared::of(name).ok_or_else(|| {
                 format!("expected `si`, `engineering` or units such as N/mm,mm,g, found `{name}`; write each unit once")
             })?;
-            if let Some(twice) = units.of_kind(&declared.coherent) {
+            let si = coherent(&declared);
+            if let Some(twice) = units.of_kind(&si) {
                 return Err(format!(
                     "`{name}` and `{}` are of the same kind; leave one of them out",
                     twice.name
@@ -49,19 +57,38 @@ impl Units {
             units.0.push(ShownUnit {
                 name: name.into(),
                 declared,
+                si,
             });
         }
         Ok(units)
     }
 
     fn of_kind(&self, si: &str) -> Option<&ShownUnit> {
-        self.0.iter().find(|own| own.declared.is_like(si))
+        // The radian is 1, but no other number without dimension is an angle.
+        let is_like = |own: &&ShownUnit| own.declared.is_like(si) && counts_angles(&own.si) == counts_angles(si);
+        self.0.iter().find(is_like)
+    }
+
+    /// The shown units of numerator and denominator, if a unit is the ratio of two signals, such as `(m/s^2)/N`, and
+    /// none is chosen for its own kind.
+    fn of_ratio<'a>(&'a self, si: &'a str) -> Option<[Part<'a>; 2]> {
+        let is_kind = KINDS.iter().any(|kind| dimension(kind) == dimension(si));
+        let (above, below) = parts(si).filter(|_| !is_kind)?;
+        if ![above, below].iter().all(|part| SIGNALS.contains(part)) {
+            return None;
+        }
+        let part = |si| Part {
+            si,
+            shown: self.of_kind(si),
+        };
+        let both = [part(above), part(below)];
+        both.iter().any(|own| own.shown.is_some()).then_some(both)
     }
 
     /// The shown unit for a unit of a measured file, and the latter.
     fn of_file(&self, unit: &str) -> Option<(&ShownUnit, Declared)> {
         let declared = Declared::of(unit)?;
-        Some((self.of_kind(&declared.coherent)?, declared))
+        Some((self.of_kind(&coherent(&declared))?, declared))
     }
 
     /// Script that passes these units to a page.
@@ -69,12 +96,7 @@ impl Units {
         if self.0.is_empty() {
             return "view.units = 'si';".into();
         }
-        let scale = |own: &ShownUnit| {
-            (
-                own.declared.coherent.clone(),
-                json!([own.declared.shown(1.0), own.name]),
-            )
-        };
+        let scale = |own: &ShownUnit| (own.si.clone(), json!([own.declared.shown(1.0), own.name]));
         let scales: serde_json::Map<_, _> = self.0.iter().map(scale).collect();
         let names: Vec<&str> = self.0.iter().map(|own| own.name.as_str()).collect();
         let system = json!({ "name": names.join(", "), "scales": scales });
@@ -84,14 +106,82 @@ impl Units {
         )
     }
 
+    /// A value in the shown unit, and the name of that; `None` if it is shown in SI.
+    fn converted<'a>(&'a self, value: f64, si: &'a str) -> Option<(f64, Cow<'a, str>)> {
+        if let Some(own) = self.of_kind(si) {
+            return Some((own.declared.shown(value), Cow::Borrowed(own.name.as_str())));
+        }
+        let [above, below] = self.of_ratio(si)?;
+        let name = format!("{}/{}", grouped(above.name()), grouped(below.name()));
+        Some((value * above.of_one() / below.of_one(), Cow::Owned(name)))
+    }
+
     /// The shown unit of a value in the unit `si`.
-    pub fn name<'a>(&'a self, si: &'a str) -> &'a str {
-        self.of_kind(si).map_or(si, |own| &own.name)
+    pub fn name<'a>(&'a self, si: &'a str) -> Cow<'a, str> {
+        self.converted(1.0, si).map_or(Cow::Borrowed(si), |(_, name)| name)
     }
 
     /// A value in the shown unit.
     pub fn value(&self, value: f64, si: &str) -> f64 {
-        self.of_kind(si).map_or(value, |own| own.declared.shown(value))
+        self.converted(value, si).map_or(value, |(shown, _)| shown)
+    }
+}
+
+/// Numerator or denominator of a ratio.
+struct Part<'a> {
+    si: &'a str,
+    /// Its shown unit; `None` for SI.
+    shown: Option<&'a ShownUnit>,
+}
+
+impl Part<'_> {
+    fn name(&self) -> &str {
+        self.shown.map_or(self.si, |own| &own.name)
+    }
+
+    /// The value of one SI unit in the shown unit.
+    fn of_one(&self) -> f64 {
+        self.shown.map_or(1.0, |own| own.declared.shown(1.0))
+    }
+}
+
+/// The coherent unit of a declared one; of an angle, `rad` or one of its rates.
+fn coherent(of: &Declared) -> String {
+    let rates = dimension(&of.coherent).filter(|_| counts_angles(&of.written));
+    match rates {
+        Some([0, 0, 0]) => "rad".into(),
+        Some([0, 0, -1]) => "rad/s".into(),
+        Some([0, 0, -2]) => "rad/s^2".into(),
+        _ => of.coherent.clone(),
+    }
+}
+
+/// True for an angle and its rates, such as `rad/s` or `deg`.
+fn counts_angles(unit: &str) -> bool {
+    ["rad", "deg", "°", "rpm"].iter().any(|symbol| unit.starts_with(symbol)) || unit.starts_with("mrad")
+}
+
+/// Numerator and denominator of a unit, without their parentheses: what stands before and after the first `/` outside
+/// parentheses.
+fn parts(unit: &str) -> Option<(&str, &str)> {
+    let mut depth = 0;
+    let at = unit.find(|c| {
+        depth += i32::from(c == '(') - i32::from(c == ')');
+        c == '/' && depth == 0
+    })?;
+    Some((bare(&unit[..at]), bare(&unit[at + 1..])))
+}
+
+fn bare(part: &str) -> &str {
+    let inner = part.strip_prefix('(').and_then(|part| part.strip_suffix(')'));
+    inner.unwrap_or(part)
+}
+
+/// A unit that stays one factor of a ratio.
+fn grouped(unit: &str) -> Cow<'_, str> {
+    match unit.contains(['/', ' ']) {
+        true => Cow::Owned(format!("({unit})")),
+        false => Cow::Borrowed(unit),
     }
 }
 
@@ -102,14 +192,14 @@ static CHOSEN: OnceLock<Units> = OnceLock::new();
 pub fn choose(units: Units) {
     let _ = CHOSEN.set(units);
     shown::convert_by(|value, si| {
-        let own = CHOSEN.get()?.of_kind(si)?;
-        Some((own.declared.shown(value), &own.name))
+        let (shown, name) = CHOSEN.get()?.converted(value, si)?;
+        Some((shown, name.into_owned()))
     });
 }
 
 /// The shown unit of a value in `si`: SI without a choice.
-pub fn name(si: &str) -> &str {
-    CHOSEN.get().map_or(si, |units| units.name(si))
+pub fn name(si: &str) -> Cow<'_, str> {
+    CHOSEN.get().map_or(Cow::Borrowed(si), |units| units.name(si))
 }
 
 /// A value in SI, converted to the shown unit.
@@ -127,7 +217,7 @@ pub fn of_file(value: f64, unit: &str) -> (f64, &str) {
 
 /// A text with its shown unit; a pure number has none.
 pub fn with_unit(shown: &str, si: &str) -> String {
-    match name(si) {
+    match &*name(si) {
         "1" | "" => shown.into(),
         unit => format!("{shown} {unit}"),
     }
@@ -140,7 +230,7 @@ pub fn script() -> String {
 
 /// A column heading with its shown unit in brackets; a pure number has none.
 pub fn heading(what: &str, si: &str) -> String {
-    match name(si) {
+    match &*name(si) {
         "1" | "" => what.into(),
         unit => format!("{what} [{unit}]"),
     }
@@ -153,16 +243,39 @@ mod tests {
     #[test]
     fn a_kind_is_shown_in_the_unit_that_was_chosen_for_it() {
         let units: Units = "N/mm, mm,g".parse().unwrap();
-        assert_eq!((units.name("N/m"), units.value(25e3, "N/m")), ("N/mm", 25.0));
-        assert_eq!((units.name("m/s^2"), units.value(9.80665, "m/s^2")), ("g", 1.0));
-        assert_eq!((units.name("N s/m"), units.value(1500.0, "N s/m")), ("N s/m", 1500.0));
+        assert_eq!((units.name("N/m"), units.value(25e3, "N/m")), ("N/mm".into(), 25.0));
+        assert_eq!((units.name("m/s^2"), units.value(9.80665, "m/s^2")), ("g".into(), 1.0));
+        assert_eq!(
+            (units.name("N s/m"), units.value(1500.0, "N s/m")),
+            ("N s/m".into(), 1500.0)
+        );
         assert_eq!(units.name("1"), "1");
         let engineering: Units = "engineering".parse().unwrap();
+        for (si, shown, size) in [
+            ("(m/s^2)/N", "g/N", 1.0 / 9.80665),
+            ("(m/s)/N", "(mm/s)/N", 1e3),
+            ("N/(m/s^2)", "N/g", 9.80665),
+            ("rad/m", "rad/mm", 1e-3),
+        ] {
+            assert_eq!(engineering.name(si), shown);
+            assert!((engineering.value(1.0, si) / size - 1.0).abs() < 1e-12, "{si}");
+        }
+        for unit in ["N/(m/s)", "m/s", "kg/m", "1/m"] {
+            assert_eq!(units.name(unit), unit);
+        }
         assert_eq!(
             (engineering.name("N s/m"), engineering.value(1500.0, "N s/m")),
-            ("N s/mm", 1.5)
+            ("N s/mm".into(), 1.5)
         );
         assert_eq!("si".parse::<Units>(), Ok(Units::default()));
+    }
+
+    #[test]
+    fn a_unit_of_angles_is_not_that_of_other_numbers() {
+        let units: Units = "deg,rpm".parse().unwrap();
+        assert_eq!((units.name("rad"), units.name("rad/s")), ("deg".into(), "rpm".into()));
+        assert_eq!((units.name("1"), units.name("1/s")), ("1".into(), "1/s".into()));
+        assert_eq!(units.value(0.5, "1"), 0.5);
     }
 
     #[test]

@@ -87,11 +87,21 @@ pub fn measured_file(path: &Path, wrong_path: &str) -> Result<Content<'static>, 
 /// A text file.
 ///
 /// # Errors
-/// Fails as [`open`] does, beyond the limit, or if the bytes are not UTF-8.
+/// Fails as [`open`] does, beyond the limit, or with [`ErrorKind::InvalidData`] if the bytes are not UTF-8.
 pub fn text(path: &Path) -> io::Result<String> {
-    let mut text = String::new();
-    limited(open(path)?).read_to_string(&mut text)?;
-    Ok(text)
+    let mut bytes = Vec::new();
+    limited(open(path)?).read_to_end(&mut bytes)?;
+    String::from_utf8(bytes).map_err(|error| {
+        let place = error.utf8_error().valid_up_to();
+        let (before, wrong) = error.as_bytes().split_at(place);
+        let line = 1 + before.iter().filter(|byte| **byte == b'\n').count();
+        let column = 1 + before.iter().rev().take_while(|byte| **byte != b'\n').count();
+        let message = format!(
+            "the byte 0x{:02X} in line {line} at byte {column}, which is not UTF-8",
+            wrong[0]
+        );
+        io::Error::new(ErrorKind::InvalidData, message)
+    })
 }
 
 /// A table that is read row by row, unpacked if its name ends in `.gz`.

@@ -2,6 +2,8 @@
 
 // Values of all parameters, including those tied to others.
 pub mod parameters;
+// Units of signals and of their ratios.
+pub mod unit;
 // The row of a response that holds a measured signal.
 pub mod signal;
 // The response of a nonlinear model about an operating point.

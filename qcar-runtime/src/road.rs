@@ -4,7 +4,7 @@
 //! integrals over the ground between two points, which are differences of two prefix integrals. So a query costs the
 //! same for a plank and for a measured road of a million samples.
 
-use crate::shown::shown;
+use crate::shown::{shown, six_digits};
 
 mod bounds;
 mod integrals;
@@ -37,37 +37,33 @@ pub(crate) struct Segment {
     pub end: f64,
 }
 
-/// Reason why something is no road for a tyre.
+/// Reason why something is no road for a tyre: what was found.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says it")]
 pub enum RoadError {
-    #[error("a road needs at least two points, found {found}")]
+    #[error("{}", points(*.found))]
     TooFew { found: usize },
-    #[error("x, z and slope must be columns of one length, found {x}, {z} and {slope} values")]
+    #[error("columns x, z and slope of {x}, {z} and {slope} values")]
     Lengths { x: usize, z: usize, slope: usize },
-    #[error("{column} of sample {sample} is {value}, no finite number")]
+    #[error("{value} as {column} of sample {sample}")]
     NotFinite {
         column: &'static str,
         sample: usize,
         value: f64,
     },
-    #[error(
-        "x falls from {} to {} at sample {sample}; x must never decrease (two points at one x are a step)",
-        shown(*.before, "m"),
-        shown(*.x, "m")
-    )]
+    #[error("x that falls from {} to {} at sample {sample}", shown(*.before, "m"), shown(*.x, "m"))]
     NotMonotonic { sample: usize, before: f64, x: f64 },
-    #[error("all points of the road lie at x = {}, so it has no length", shown(*.x, "m"))]
+    #[error("a road with all points at x = {}", shown(*.x, "m"))]
     NoLength { x: f64 },
-    #[error("slope {slope} at x = {} contradicts the heights there, which rise by {rise}", shown(*.x, "m"))]
+    #[error("slope {} at x = {}, where the heights rise by {} m per m", six_digits(*.slope), shown(*.x, "m"), six_digits(*.rise))]
     SlopeContradictsHeight { x: f64, slope: f64, rise: f64 },
     #[error(
-        "the road is rougher than its sampling: leaving out a sample changes it by {share:.2} of its own standard deviation, more than {limit}"
+        "a road rougher than its sampling: leaving out a sample changes it by {share:.2} of its own standard deviation"
     )]
     Rough { share: f64, limit: f64 },
-    #[error("the road ends at x = {}, but the run reaches x = {}", shown(*.end, "m"), shown(*.needed, "m"))]
+    #[error("a road that ends at x = {}", shown(*.end, "m"))]
     TooShort { end: f64, needed: f64 },
-    #[error("{name} must be {expected}, found {value}")]
+    #[error("a {name} of {}", shown(*.value, "m"))]
     Shape {
         name: &'static str,
         expected: &'static str,
@@ -75,7 +71,31 @@ pub enum RoadError {
     },
 }
 
+fn points(found: usize) -> String {
+    match found {
+        0 => "a road without points".into(),
+        1 => "a road of one point".into(),
+        more => format!("a road of {more} points"),
+    }
+}
+
 impl RoadError {
+    /// What a road for a tyre must have.
+    #[must_use]
+    pub fn expected(&self) -> String {
+        match self {
+            Self::TooFew { .. } => "two points or more".into(),
+            Self::Lengths { .. } => "columns of one length".into(),
+            Self::NotFinite { .. } => "a finite number".into(),
+            Self::NotMonotonic { .. } => "x that never decreases; two points at one x are a step".into(),
+            Self::NoLength { .. } => "points at several x".into(),
+            Self::SlopeContradictsHeight { .. } => "a slope that leads to the next height".into(),
+            Self::Rough { limit, .. } => format!("a change of at most {limit}, so that a tyre can roll on chords"),
+            Self::TooShort { needed, .. } => format!("one that reaches x = {}, as the run does", shown(*needed, "m")),
+            Self::Shape { expected, .. } => (*expected).into(),
+        }
+    }
+
     /// How the road can be mended.
     #[must_use]
     pub fn remedy(&self) -> &'static str {

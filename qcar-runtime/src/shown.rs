@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::OnceLock;
 
 /// Converts a value in an SI unit to the unit in which it is shown, with the name of that; `None` if it is shown in SI.
-pub type Convert = fn(f64, &str) -> Option<(f64, &'static str)>;
+pub type Convert = fn(f64, &str) -> Option<(f64, String)>;
 
 static CONVERT: OnceLock<Convert> = OnceLock::new();
 
@@ -53,7 +53,7 @@ impl fmt::LowerExp for Shown<'_> {
 }
 
 impl Shown<'_> {
-    fn converted(&self) -> Option<(f64, &'static str)> {
+    fn converted(&self) -> Option<(f64, String)> {
         let (value, unit) = CONVERT.get().and_then(|convert| convert(self.value, self.si))?;
         Some((six_digits(value), unit))
     }

@@ -214,35 +214,32 @@ fn roads_that_make_no_sense_are_refused() {
     let cases = [
         (
             Road::from_samples(&ramp[..1], &flat[..1], &flat[..1]),
-            "a road needs at least two points, found 1",
+            "a road of one point",
         ),
         (
             Road::from_samples(&ramp, &flat[1..], &flat),
-            "one length, found 200, 199 and 200 values",
+            "columns x, z and slope of 200, 199 and 200 values",
         ),
         (
             Road::from_samples(&ramp, &with(3, f64::NAN), &flat),
-            "z of sample 3 is NaN",
+            "NaN as z of sample 3",
         ),
         (
             Road::from_samples(&ramp, &flat, &with(4, f64::INFINITY)),
-            "slope of sample 4 is inf",
+            "inf as slope of sample 4",
         ),
         (
             Road::from_samples(&with(100, -1.0), &flat, &flat),
-            "x falls from 0 m to -1 m at sample 100",
+            "x that falls from 0 m to -1 m at sample 100",
         ),
-        (
-            Road::from_samples(&flat, &flat, &flat),
-            "all points of the road lie at x = 0 m",
-        ),
+        (Road::from_samples(&flat, &flat, &flat), "all points at x = 0 m"),
         (
             Road::from_samples(&ramp, &with(50, 0.05), &flat),
-            "contradicts the heights there",
+            "where the heights rise by",
         ),
         (
             Road::from_samples(&ramp, &noise, &chords(&noise)),
-            "the road is rougher than its sampling",
+            "a road rougher than its sampling",
         ),
         (
             Road::from_shape(
@@ -252,12 +249,9 @@ fn roads_that_make_no_sense_are_refused() {
                 },
                 1.0,
             ),
-            "height of the plank must be",
+            "height of the plank of 0 m",
         ),
-        (
-            Road::from_shape(&CLEAT, -1.0),
-            "run-in must be a positive number of metres, found -1",
-        ),
+        (Road::from_shape(&CLEAT, -1.0), "run-in of -1 m"),
         (
             Road::from_random(&Random {
                 class: Class::A,

@@ -9,6 +9,7 @@ use qcar_runtime::ensemble::{self, Axis, DIMENSIONS, Design, Ensemble, Metrics, 
 use qcar_runtime::error::InputError;
 use qcar_runtime::model::{About, Model};
 use qcar_runtime::response::parameters::Values;
+use qcar_runtime::response::unit::unit;
 use qcar_runtime::simulate::{Variant, tyre_of};
 
 use crate::catalogue::{self, Loaded};
@@ -74,7 +75,7 @@ pub struct Arguments {
     /// Seed of the design; 0 is the published Sobol sequence
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
-    /// Cleats to drive over: `standard` (three speeds, four heights), or HEIGHT@SPEED such as 20mm@30km/h
+    /// Cleats to drive over: `standard` (three speeds, four heights), or HEIGHT@SPEED with units, such as 20mm@30km/h
     #[arg(long, value_delimiter = ',', value_name = "RIDES")]
     rides: Vec<RideName>,
     /// The metrics to compute [default: peak, after-shake and vdv of rides; without rides transmissibility and modes]
@@ -279,7 +280,6 @@ fn track(arguments: &Arguments) -> Result<Option<Track>, Failure> {
     if arguments.rides.is_empty() {
         return Ok(None);
     }
-    let rides = ride_name::rides(&arguments.rides)?;
     vary::refuse_facts(&arguments.vary)?;
     let Some(file) = &arguments.model.params else {
         let remedy = "add --params with a campaign, or a file that has [vehicle]";
@@ -299,7 +299,7 @@ fn track(arguments: &Arguments) -> Result<Option<Track>, Failure> {
     };
     let (tyre, load) = tyre_of(&|name| vehicle.get(name).copied(), Path::new(&shown))?;
     Ok(Some(Track {
-        rides,
+        rides: ride_name::rides(&arguments.rides, tyre.radius())?,
         tyre,
         load,
         variant: Variant::Complete,
@@ -338,7 +338,7 @@ fn metrics<'a>(arguments: &Arguments, model: &'a Loaded) -> Result<Metrics<'a, d
     let ratio = |channel: &qcar_runtime::model::Channel| {
         Ok::<_, Failure>(ensemble::Ratio {
             name: channel.name.to_string(),
-            unit: frf::unit(about, channel),
+            unit: unit(about, channel),
             excitation: frf::excitation(about, channel)?,
             numerator: channel.numerator.clone(),
             denominator: channel.denominator.clone(),

@@ -428,8 +428,8 @@ fn plan(campaign: &Campaign, about: &About, choices: &Choices) -> Result<Plan, I
         match plan.parameters.iter_mut().find(|parameter| parameter.name == *name) {
             Some(parameter) => parameter.fit = fit,
             None => {
-                let names: Vec<_> = plan.parameters.iter().map(|p| format!("`{}`", p.name)).collect();
-                let (found, remedy) = (format!("`{name}`"), format!("choose among {}", names.join(", ")));
+                let remedy = spelling::choice(name, plan.parameters.iter().map(|own| own.name.as_str()));
+                let found = format!("`{name}`");
                 let name = if fit { "--free" } else { "--fix" };
                 problems.push(flag(name, found, "a parameter that may be fitted", &remedy));
             }

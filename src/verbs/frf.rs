@@ -7,11 +7,13 @@ use clap::Args;
 use nalgebra::Complex;
 use qcar_dsl::response::Wanted;
 use qcar_runtime::error::InputError;
-use qcar_runtime::model::{About, Channel, Input, InputKind, Model, Quantity, Signal, SignalKind};
+use qcar_runtime::model::{About, Channel, Model};
 use qcar_runtime::response::Response;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::response::ratio::{Ratio, between};
 use qcar_runtime::response::signal::driver;
+use qcar_runtime::response::unit::unit;
+use qcar_runtime::spelling;
 use serde::Serialize;
 
 use crate::catalogue;
@@ -65,10 +67,13 @@ impl FromStr for Frequencies {
         let lines = lines.parse().ok().filter(|n| (1..=1_000_000).contains(n));
         let lines = lines.ok_or("expected 1 to 1000000 lines after the second `:`")?;
         let (from, to) = (hertz(from)?, hertz(to)?);
-        if from < to || (from == to && lines == 1) {
-            Ok(Frequencies { from, to, lines })
-        } else {
-            Err(format!("expected a last frequency above the first, found {from}:{to}"))
+        match lines {
+            1 if from != to => Err(format!(
+                "expected two lines or more from {from} to {to} Hz, found 1; one line is {from}:{from}:1"
+            )),
+            1 => Ok(Frequencies { from, to, lines }),
+            _ if from < to => Ok(Frequencies { from, to, lines }),
+            _ => Err(format!("expected a last frequency above the first, found {from}:{to}")),
         }
     }
 }
@@ -154,11 +159,7 @@ struct ChannelResponse {
 /// Fails if the model has no channels, or lacks a name.
 pub(crate) fn chosen<'a>(about: &'a About, names: &[String]) -> Result<Vec<&'a Channel>, Failure> {
     let find = |name: &String| about.channels.iter().find(|channel| channel.name == **name);
-    let known: Vec<_> = about
-        .channels
-        .iter()
-        .map(|channel| format!("`{}`", channel.name))
-        .collect();
+    let known: Vec<&str> = about.channels.iter().map(|channel| &*channel.name).collect();
     if known.is_empty() {
         let remedy =
             "declare one in the model file, such as `channel pad_to_body = body.acceleration / pad.acceleration;`";
@@ -172,9 +173,11 @@ pub(crate) fn chosen<'a>(about: &'a About, names: &[String]) -> Result<Vec<&'a C
     }
     let unknown = names.iter().filter(|name| find(name).is_none());
     let expected = format!("channels of `{}`", about.name);
-    let remedy = format!("choose among {}", known.join(", "));
     let problems: Vec<_> = unknown
-        .map(|name| flag("--channels", format!("`{name}`"), &expected, &remedy))
+        .map(|name| {
+            let remedy = spelling::choice(name, known.iter().copied());
+            flag("--channels", format!("`{name}`"), &expected, &remedy)
+        })
         .collect();
     let chosen = match names {
         [] => about.channels.iter().collect(),
@@ -258,70 +261,12 @@ pub fn excitation(about: &About, channel: &Channel) -> Result<usize, Failure> {
     })
 }
 
-/// Heading of a column of decibels, relative to 1 of the unit.
-fn decibels(name: &str, unit: &str) -> String {
-    match unit {
+/// Heading of a column of decibels, relative to 1 of the shown unit.
+fn decibels(name: &str, si: &str) -> String {
+    match &*units::name(si) {
         "1" => format!("{name}_dB"),
-        unit => format!("{name}_dB({unit})"),
+        unit => format!("{name}_dB re 1 {unit}"),
     }
-}
-
-/// The unit of a channel, such as `(m/s^2)/N`.
-pub(crate) fn unit(about: &About, channel: &Channel) -> String {
-    let [above, below] = [&channel.numerator, &channel.denominator].map(|signal| unit_of(about, signal));
-    let grouped = |unit: String| {
-        if unit.contains(['/', ' ']) {
-            format!("({unit})")
-        } else {
-            unit
-        }
-    };
-    match (above, below) {
-        (above, below) if above == below => "1".to_string(),
-        (above, below) if below == "1" => above,
-        (above, below) => format!("{}/{}", grouped(above), grouped(below)),
-    }
-}
-
-/// Unit of a signal: that of its output or input, or the unit that follows from another derivative of the same motion.
-fn unit_of(about: &About, signal: &Signal) -> String {
-    let here = |other: &Signal| other.location == signal.location && other.axis == signal.axis;
-    let outputs = about.outputs.iter().filter(|output| here(&output.signal));
-    let inputs = about
-        .inputs
-        .iter()
-        .filter(|input| driven(about, input).as_ref().is_some_and(here));
-    let known = outputs.map(|output| (output.signal.kind, &output.unit));
-    let known = known.chain(inputs.filter_map(|input| Some((driven(about, input)?.kind, &input.unit))));
-    let known: Vec<_> = known.collect();
-    if let Some((_, unit)) = known.iter().find(|(kind, _)| *kind == signal.kind) {
-        return unit.to_string();
-    }
-    let turns = known.iter().any(|(_, unit)| !unit.starts_with('m'));
-    let unit = match (signal.kind, turns) {
-        (SignalKind::Motion(Quantity::Position), false) => "m",
-        (SignalKind::Motion(Quantity::Velocity), false) => "m/s",
-        (SignalKind::Motion(Quantity::Acceleration), false) => "m/s^2",
-        (SignalKind::Motion(Quantity::Velocity), true) => "1/s",
-        (SignalKind::Motion(Quantity::Acceleration), true) => "1/s^2",
-        _ => "1",
-    };
-    unit.to_string()
-}
-
-/// The signal of an input.
-fn driven(about: &About, input: &Input) -> Option<Signal> {
-    let (place, kind) = match input.kind {
-        InputKind::Motion(place, quantity) => (place, SignalKind::Motion(quantity)),
-        InputKind::Force(place) => (place, SignalKind::Force),
-        InputKind::Gravity => return None,
-    };
-    let excitation = about.excitations.get(usize::from(place))?;
-    Some(Signal {
-        location: excitation.name.clone(),
-        axis: excitation.axis.clone(),
-        kind,
-    })
 }
 
 fn text(of: &FrequencyResponse, frequency: &[f64]) -> String {
@@ -337,7 +282,7 @@ fn text(of: &FrequencyResponse, frequency: &[f64]) -> String {
         let polar = of.channels.0.iter().flat_map(|(_, channel)| {
             let value = Complex::new(channel.re[line], channel.im[line]);
             [
-                number(20.0 * value.norm().log10(), 5),
+                number(20.0 * units::value(value.norm(), &channel.unit).log10(), 5),
                 number(value.arg().to_degrees(), 5),
             ]
         });
@@ -351,14 +296,16 @@ fn text(of: &FrequencyResponse, frequency: &[f64]) -> String {
 }
 
 fn csv(of: &FrequencyResponse, frequency: &[f64]) -> String {
-    let names = of.channels.0.iter().map(|(name, _)| format!(",{name}_re,{name}_im"));
+    let names = of.channels.0.iter().map(|(name, channel)| {
+        let [re, im] = ["re", "im"].map(|part| units::heading(&format!("{name}_{part}"), &channel.unit));
+        format!(",{re},{im}")
+    });
     let mut out = format!("{}{}\n", units::heading("frequency", "Hz"), names.collect::<String>());
     for (line, frequency) in frequency.iter().enumerate() {
-        let cells = of
-            .channels
-            .0
-            .iter()
-            .map(|(_, channel)| format!(",{},{}", channel.re[line], channel.im[line]));
+        let cells = of.channels.0.iter().map(|(_, channel)| {
+            let [re, im] = [&channel.re, &channel.im].map(|part| units::value(part[line], &channel.unit));
+            format!(",{re},{im}")
+        });
         let frequency = units::value(*frequency, "Hz");
         out.push_str(&format!("{frequency}{}\n", cells.collect::<String>()));
     }
@@ -377,7 +324,9 @@ mod tests {
 
     #[test]
     fn nonsense_is_refused() {
-        for text in ["", "1:2", "0:10:5", "10:1:5", "1:2:0", "a:2:3", "1:inf:3", "1:2:-1"] {
+        for text in [
+            "", "1:2", "0:10:5", "10:1:5", "1:2:0", "a:2:3", "1:inf:3", "1:2:-1", "1:30:1",
+        ] {
             assert!(text.parse::<Frequencies>().is_err(), "{text}");
         }
     }

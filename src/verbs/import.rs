@@ -57,6 +57,7 @@ struct Measured {
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     must_be_new(&arguments.out)?;
+    each_once(&arguments.files)?;
     let model = catalogue::load(&arguments.model)?;
     let name = name_of(&arguments.out)?;
     let pads = Look {
@@ -97,6 +98,28 @@ fn must_be_new(folder: &Path) -> Result<(), Failure> {
                 "choose another name, or move it away",
             )
             .into())
+        }
+    }
+}
+
+/// # Errors
+/// Fails if two paths are those of one file, whose runs would have one name.
+fn each_once(files: &[PathBuf]) -> Result<(), Failure> {
+    let same = |a: &Path, b: &Path| {
+        a == b
+            || a.canonicalize()
+                .ok()
+                .is_some_and(|a| b.canonicalize().is_ok_and(|b| a == b))
+    };
+    let twice = files
+        .iter()
+        .enumerate()
+        .find(|(at, file)| files[..*at].iter().any(|other| same(other, file)));
+    match twice {
+        None => Ok(()),
+        Some((_, file)) => {
+            let found = format!("{} a second time", file.display());
+            Err(flag("FILES", found, "each file once", "leave one of them out").into())
         }
     }
 }

@@ -21,6 +21,7 @@ use crate::results::Results;
 use crate::roads;
 use crate::table::{Table, noted};
 use crate::terminal::{aside, prose};
+use crate::units;
 use crate::verbs::TableFormat;
 
 // The axle with its values and roads.
@@ -248,7 +249,11 @@ fn list(ground: &Ground<'_>) -> String {
     }
     let mut table = Table::new(["metric", "unit", "meaning"]);
     for metric in ground.metrics() {
-        table.row(vec![metric.name.clone(), metric.unit.into(), metric.doc.clone()]);
+        table.row(vec![
+            metric.name.clone(),
+            units::name(&metric.unit).into(),
+            metric.doc.clone(),
+        ]);
     }
     table.text()
 }

@@ -119,6 +119,34 @@ fn flags_that_contradict_each_other_are_refused() {
 }
 
 #[test]
+fn text_that_is_not_utf_8_is_shown_its_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("latin.axle");
+    fs::write(&file, b"axle car {\n    \"K\xF6rper\"\n}\n").unwrap();
+    let said = [
+        "latin.axle",
+        "the byte 0xF6 in line 2 at byte 7",
+        "save the file as UTF-8",
+    ];
+    common::refused(&qcar(&["check", file.to_str().unwrap()]), &said);
+}
+
+#[test]
+fn a_misspelt_name_is_recognised() {
+    for (line, said) in [
+        ("frf quarter_cra", "did you mean `quarter_car`?"),
+        ("frf quarter_car --channels pad_to_bdy", "did you mean `pad_to_body`?"),
+        (
+            "patch axle_c coulomb_frictoin --at damper",
+            "did you mean `coulomb_friction`?",
+        ),
+    ] {
+        let words: Vec<&str> = line.split(' ').collect();
+        common::refused(&qcar(&words), &[said]);
+    }
+}
+
+#[test]
 fn numbers_and_names_of_flags_are_checked() {
     let score = ["score", "models/campaigns/axle_a_rig", "--within"];
     for value in ["nan", "-5", "inf", "three"] {

@@ -313,6 +313,7 @@ fn channels_have_the_units_of_their_signals() {
             channel turned = pitch.position / turn.force;
             channel transmitted = front.force / lift.force;
             channel nodding = pitch.acceleration / pad.position;
+            channel pitching = pitch.acceleration / pad.acceleration;
             channel plain = body.acceleration / pad.acceleration;
         }
     }"#;
@@ -325,15 +326,16 @@ fn channels_have_the_units_of_their_signals() {
     let table = frf("text");
     for (channel, unit) in [
         ("accelerance", "(m/s^2)/N"),
-        ("turned", "1/(N m)"),
+        ("turned", "rad/(N m)"),
         ("transmitted", "1"),
-        ("nodding", "(1/s^2)/m"),
+        ("nodding", "(rad/s^2)/m"),
+        ("pitching", "rad/m"),
         ("plain", "1"),
     ] {
         assert_eq!(json["channels"][channel]["unit"], unit, "{channel}");
         let heading = match unit {
             "1" => format!("{channel}_dB "),
-            unit => format!("{channel}_dB({unit})"),
+            unit => format!("{channel}_dB re 1 {unit}"),
         };
         assert!(table.contains(&heading), "{table}");
     }

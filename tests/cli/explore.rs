@@ -166,8 +166,14 @@ fn results_of_something_else_are_refused() {
         &run(&format!("{CAR} --count 9")),
         &["`rows` is 8", "`rows` is 9", "choose another file"],
     );
-    refused(&run(&format!("{line} --set m_corner=410")), &["`parameters`"]);
-    refused(&run(&format!("{line} --units engineering")), &["`columns`"]);
+    refused(
+        &run(&format!("{line} --set m_corner=410")),
+        &["`parameters.m_corner` is ", "`parameters.m_corner` is 410"],
+    );
+    refused(
+        &run(&format!("{line} --units engineering")),
+        &["`columns", "[N/m]", "[N/mm]"],
+    );
     // A row that this command would not write, at the end of those that it had.
     let [done, part] = ["sets.csv", "sets.csv.part"].map(|name| folder.path().join(name));
     fs::remove_file(&done).unwrap();
@@ -213,6 +219,11 @@ fn wishes_are_read_with_care() {
         ("--vary k_tire=1", &["name=low..high"]),
         ("--vary k_tire=-1%..1% --vary k_tire=-2%..2%", &["the same name twice"]),
         ("--vary k_tire=-1%..1% --rides 20mm", &["HEIGHT@SPEED"]),
+        (
+            "--vary k_tire=-1%..1% --rides 20@30km/h",
+            &["units of both", "20mm@30km/h", "found `20@30km/h`"],
+        ),
+        ("--vary k_tire=-1%..1% --rides 20mm@30", &["units of both"]),
         ("--vary k_tire=-1%..1% --rides 20mm@30km/h", &["--rides", "no --params"]),
         ("--vary k_tire=-1%..1% --metrics peak", &["--metrics", "add --rides"]),
         ("--vary k_tire=-1%..1% --metrics comfort", &["comfort", "vdv"]),
@@ -234,6 +245,16 @@ fn wishes_are_read_with_care() {
         );
         refused(&ran, said);
         assert!(!folder.path().join("sets.csv.part").exists(), "{wish}");
+    }
+    for (ride, said) in [
+        ("20m@30km/h", ["a cleat of 20 m", "the radius of the tyre, 0.35 m"]),
+        (
+            "20mm@300m/s",
+            ["a speed of 300 m/s", "at least 0.5 m/s and at most 100 m/s"],
+        ),
+    ] {
+        let line = format!("{AXLE} --count 2 --rides {ride} --out sets.csv");
+        refused(&run_line(folder.path(), &line), &["--rides", said[0], said[1]]);
     }
     let tyre = format!("{AXLE} --vary static_tire_load=-5%..5% --count 2 --rides 20mm@30km/h --out sets.csv");
     refused(

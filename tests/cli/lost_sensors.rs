@@ -37,9 +37,41 @@ fn a_misspelt_place_of_a_cleat_run_is_no_missing_output() {
     );
     assert!(!said.contains("output whel"), "{said}");
     assert!(
-        said.contains("the model has no `whel` along z; that sensor is left out; did you mean `wheel`?"),
+        said.contains(
+            "model `axle_a` gives no acceleration of `whel` along z, so that sensor is left out; did you mean `wheel`?"
+        ),
         "{said}"
     );
+}
+
+/// Two masses, of which only the upper one is an output.
+const HALF_SHOWN: &str = "axle half_shown {\n    \"A mass on a mass\"\n    param k: N/m = 800 in 1..1e4;\n    \
+    direction z {\n        mass body = 1 kg; mass upper = 1 kg; force f on body;\n        \
+    link spring: body { spring k; damper 3 N s/m; }\n        \
+    link top: upper - body { spring 700 N/m; damper 3 N s/m; }\n        output upper.acceleration;\n    }\n}\n";
+
+#[test]
+fn a_mass_without_an_output_is_no_missing_mass() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().to_str().unwrap();
+    fs::write(folder.path().join("half_shown.axle"), HALF_SHOWN).unwrap();
+    let parameters = parameter("k", 800.0, "N/m", "range = [1.0, 2000.0]\n");
+    campaign(
+        folder.path(),
+        "./half_shown.axle",
+        &parameters,
+        "band_limited = false",
+        &[&pushed()],
+    );
+    let said = [
+        "model `half_shown` gives no displacement of `body` along z",
+        "add `output body.position;` to the model",
+    ];
+    for verb in ["fit", "discover"] {
+        refused(&qcar(&[verb, path]), &said);
+    }
+    let checked = succeeds(&["check", path]);
+    assert!(said.iter().all(|said| checked.contains(said)), "{checked}");
 }
 
 #[test]
@@ -59,7 +91,7 @@ fn a_recorded_input_that_the_model_lacks_is_named_by_a_replay() {
     fs::write(&manifest, text.replace("location = \"f\"", "location = \"push\"")).unwrap();
     let said = succeeds(&["simulate", path]);
     assert!(
-        said.contains("the model has no `push` along z; that sensor is left out"),
+        said.contains("model `one_mass` gives no force of `push` along z, so that sensor is left out"),
         "{said}"
     );
     let checked = succeeds(&["check", path]);
@@ -148,7 +180,7 @@ fn an_angle_is_no_displacement() {
         let said = [
             "campaign.toml, `channel z`",
             "`pitch` in m/s^2",
-            "1/s^2",
+            "one in rad/s^2",
             "write `unit = \"rad/s^2\"`",
             "remove the channel",
         ];

@@ -79,7 +79,7 @@ fn a_new_campaign_says_what_to_put_where_and_fits_once_it_is_there() {
     // What is known of the vehicle has no value that anybody could take for known.
     let unknown = in_folder(folder.path(), "fit data/rig --starts 2");
     assert!(
-        unknown.status == 2 && unknown.stderr.contains("m_corner"),
+        unknown.status == 2 && unknown.stderr.contains("fill in the line `# m_corner =`"),
         "{}",
         unknown.stderr
     );

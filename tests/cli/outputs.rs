@@ -239,6 +239,17 @@ fn a_patch_replaces_no_file() {
 }
 
 #[test]
+fn a_file_is_imported_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("rig");
+    let record = "models/campaigns/axle_a_rig/rig/sweep_025.csv.gz";
+    let again = format!("./{record}");
+    let ran = qcar(&["import", record, &again, "--out", out.to_str().unwrap()]);
+    refused(&ran, &[&again, "a second time", "leave one of them out"]);
+    assert!(!out.exists());
+}
+
+#[test]
 fn a_new_campaign_may_have_a_name_with_quotation_marks() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("rig \"front\"");

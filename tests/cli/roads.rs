@@ -254,7 +254,7 @@ fn what_is_no_road_is_refused_with_its_place() {
             &[
                 "rough.csv",
                 "rougher than its sampling",
-                "a tyre can roll; sample the profile finer",
+                "a tyre can roll on chords; sample the profile finer",
             ],
         ),
         (

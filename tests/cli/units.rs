@@ -236,6 +236,109 @@ fn messages_about_roads_and_tyres_are_in_the_units_asked_for() {
     );
 }
 
+/// A machine on mounts: its channel is a speed over a force.
+const MACHINE: &str = "axle machine {
+    \"A machine on mounts\"
+    param m: kg = 100;
+    param k: N/m = 300 N/mm;
+    param c: N s/m = 400;
+    direction z {
+        mass engine = m;
+        force shaker on engine;
+        link mount: engine { spring k; damper c; }
+        output engine.acceleration;
+        channel mobility = engine.velocity / shaker.force;
+    }
+}
+";
+
+#[test]
+fn a_channel_has_the_unit_of_its_signals_in_every_verb() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("machine.axle");
+    fs::write(&file, MACHINE).unwrap();
+    let model = file.to_str().unwrap();
+    let of = |verb: &[&str], units: &str| succeeds(&[&[verb[0], model], &verb[1..], &["--units", units]].concat());
+    let frf = ["frf", "--frequencies", "5:10:2", "--format", "csv"];
+    let magnitude = |text: &str| {
+        let row: Vec<f64> = text
+            .lines()
+            .nth(1)
+            .unwrap()
+            .split(',')
+            .map(|cell| cell.parse().unwrap())
+            .collect();
+        row[1].hypot(row[2])
+    };
+    let (si, own) = (of(&frf, "si"), of(&frf, "engineering"));
+    assert!(
+        si.starts_with("frequency [Hz],mobility_re [(m/s)/N],mobility_im [(m/s)/N]\n"),
+        "{si}"
+    );
+    assert!(
+        own.starts_with("frequency [Hz],mobility_re [(mm/s)/N],mobility_im [(mm/s)/N]\n"),
+        "{own}"
+    );
+    assert!((magnitude(&own) / magnitude(&si) - 1e3).abs() < 1e-6, "{own}");
+    let text = of(&["frf", "--frequencies", "5:10:2"], "engineering");
+    assert!(text.contains("mobility_dB re 1 (mm/s)/N"), "{text}");
+    for (units, unit, size) in [("si", "(m/s)/N", 1.0), ("engineering", "(mm/s)/N", 1e3)] {
+        let listed = of(&["sensitivity", "--list"], units);
+        assert!(
+            rows(&listed, "metric")
+                .iter()
+                .any(|row| row[..2] == ["mobility.peak", unit]),
+            "{listed}"
+        );
+        // The largest mobility of a mass on a spring and a damper is 1/c.
+        let table = of(&["sensitivity", "--metrics", "mobility.peak"], units);
+        let row = rows(&table, "metric")
+            .into_iter()
+            .find(|row| row[0] == "mobility.peak")
+            .unwrap();
+        assert_eq!(row[2], unit);
+        assert!(same(&row[1], size / 400.0), "{row:?}");
+    }
+}
+
+/// A rotor on a shaft: its states turn.
+const ROTOR: &str = "axle rotor {
+    \"A rotor on a shaft\"
+    param j: kg m^2 = 0.5;
+    param k: N m/rad = 800 N m/rad;
+    param c: N m s/rad = 0.5;
+    direction phi {
+        inertia load = j;
+        force torque on load;
+        link shaft: load { spring k; damper c; }
+        output load.velocity;
+        channel compliance = load.acceleration / torque.force;
+    }
+}
+";
+
+#[test]
+fn an_angle_is_in_rad_and_no_other_number_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("rotor.axle");
+    fs::write(&file, ROTOR).unwrap();
+    let model = file.to_str().unwrap();
+    let matrices = succeeds(&["matrices", model]);
+    assert!(matrices.contains("phi_load [rad]  vphi_load [rad/s]"), "{matrices}");
+    let matrices = succeeds(&["matrices", model, "--units", "deg,deg/s"]);
+    assert!(matrices.contains("phi_load [deg]  vphi_load [deg/s]"), "{matrices}");
+    let frf = succeeds(&["frf", model, "--frequencies", "1:2:2"]);
+    assert!(frf.contains("compliance_dB re 1 (rad/s^2)/(N m)"), "{frf}");
+    let table = succeeds(&["sensitivity", model, "--metrics", "mode.1.damping", "--units", "deg"]);
+    let row = rows(&table, "metric")
+        .into_iter()
+        .find(|row| row[0] == "mode.1.damping")
+        .unwrap();
+    // c / (2 √(k j)).
+    assert_eq!(row[2], "1");
+    assert!(same(&row[1], 0.5 / (2.0 * 400f64.sqrt())), "{row:?}");
+}
+
 /// All files of a folder that are tables.
 fn tables(folder: &Path) -> Vec<std::path::PathBuf> {
     let mut found = Vec::new();

@@ -83,6 +83,15 @@ fn unit(coordinate: &Coordinate, rates: i16) -> Unit {
     }
 }
 
+/// The unit of a motion as people write it: an angle is in rad, although its unit is 1.
+fn of_motion(unit: Unit) -> String {
+    let written = unit.to_string();
+    match written.strip_prefix('1') {
+        Some(rates) => format!("rad{rates}"),
+        None => written,
+    }
+}
+
 fn parameter(p: &model::Parameter) -> Parameter {
     Parameter {
         name: p.name.clone().into(),
@@ -159,7 +168,7 @@ fn state(model: &Checked, &Component { symbol, unit }: &Component) -> Option<Sta
     };
     Some(State {
         name: name.into(),
-        unit: unit.to_string().into(),
+        unit: of_motion(unit).into(),
         location: c.name.clone().into(),
         axis: c.direction.0.clone().into(),
         kind,
@@ -187,7 +196,7 @@ fn input(model: &Checked, sources: &[ExcitationSource], &Component { symbol, uni
     };
     Some(Input {
         name: name.into(),
-        unit: unit.to_string().into(),
+        unit: of_motion(unit).into(),
         axis: direction.0.clone().into(),
         kind,
     })
@@ -196,7 +205,7 @@ fn input(model: &Checked, sources: &[ExcitationSource], &Component { symbol, uni
 fn output(model: &Checked, output: &model::Output) -> Output {
     Output {
         name: output.name.clone().into(),
-        unit: output.unit.to_string().into(),
+        unit: of_motion(output.unit).into(),
         signal: signal(model, &output.signal),
     }
 }

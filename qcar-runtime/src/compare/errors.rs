@@ -42,7 +42,7 @@ pub struct Errors {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says it")]
 pub enum CompareError {
-    #[error("the wheel's vertical acceleration never exceeds zero in the {record}; expected a run over an obstacle")]
+    #[error("no upward acceleration of the wheel in the {record}")]
     NoPeak { record: &'static str },
     #[error("the after-shake of the {record} starts at sample {start}, but it has only {samples}; record for longer")]
     TooShort {

@@ -45,7 +45,7 @@ pub use input_noise::Quieter;
 pub use predict::{predict, predict_by_initial_states, predict_sides, replayed};
 pub use prediction::{Delay, Free, Initial, PredictError, Prediction, TestConditions};
 pub use run::{Band, Means, Passage, Pulses, Recordings, Restart, Run, Spread, Stimulus, measures, zero_of};
-pub use sensor::{excitation_of, is_known, nearest_place, order_of, signal_of};
+pub use sensor::{excitation_of, is_known, missing, nearest_place, order_of, signal_of};
 pub(super) use series::nearest;
 pub use series::{Kind, Series};
 pub use sweep::unsteady;

@@ -1,8 +1,11 @@
 //! The metrics of a model and their names.
 
+use std::borrow::Cow;
+
 use crate::campaign::RoleNames;
 use crate::compare::Weighting;
 use crate::model::{About, Quantity, SignalKind};
+use crate::response::unit::unit;
 use crate::roles::Roles;
 
 /// A metric of comfort, load, travel or vibration.
@@ -11,7 +14,7 @@ pub struct Metric {
     /// For example `body_x.peak`.
     pub name: String,
     /// SI unit.
-    pub unit: &'static str,
+    pub unit: Cow<'static, str>,
     /// Description.
     pub doc: String,
     /// How it is computed.
@@ -67,7 +70,7 @@ pub fn metrics(about: &About, modes: usize) -> Vec<Metric> {
         let force = about.outputs.len();
         all.push(Metric {
             name: "tyre.dynamic_load".into(),
-            unit: "N",
+            unit: "N".into(),
             doc: "RMS of the vertical tyre force minus its static value, from the onset on".into(),
             what: What::Ride(force, Measure::Variation),
         });
@@ -78,7 +81,7 @@ pub fn metrics(about: &About, modes: usize) -> Vec<Metric> {
         {
             all.push(Metric {
                 name: "suspension.travel".into(),
-                unit: "m",
+                unit: "m".into(),
                 doc: format!("largest change of the height of `{}` over the body", roles.wheel),
                 what: What::Ride(travel, Measure::Excursion),
             });
@@ -99,9 +102,9 @@ fn of_accelerations(about: &About) -> impl Iterator<Item = Metric> {
         } else {
             (Weighting::Wd, "Wd")
         };
-        let metric = |suffix: &str, unit, doc: String, measure| Metric {
+        let metric = |suffix: &str, unit: &'static str, doc: String, measure| Metric {
             name: format!("{location}_{axis}.{suffix}"),
-            unit,
+            unit: unit.into(),
             doc: format!("{doc} of the acceleration of `{location}` along {axis}"),
             what: What::Ride(place, measure),
         };
@@ -137,17 +140,22 @@ fn of_accelerations(about: &About) -> impl Iterator<Item = Metric> {
 
 fn of_channels(about: &About) -> impl Iterator<Item = Metric> {
     about.channels.iter().enumerate().flat_map(|(place, channel)| {
-        let metric = |suffix: &str, unit, doc: &str, what| Metric {
+        let metric = |suffix: &str, unit: Cow<'static, str>, doc: &str, what| Metric {
             name: format!("{}.{suffix}", channel.name),
             unit,
             doc: format!("{doc} of the channel `{}`", channel.name),
             what,
         };
         [
-            metric("peak", "1", "largest magnitude", What::Peak(place)),
+            metric(
+                "peak",
+                unit(about, channel).into(),
+                "largest magnitude",
+                What::Peak(place),
+            ),
             metric(
                 "peak_frequency",
-                "Hz",
+                "Hz".into(),
                 "frequency of the largest magnitude",
                 What::PeakFrequency(place),
             ),
@@ -160,13 +168,13 @@ fn of_vibration(place: usize) -> [Metric; 2] {
     [
         Metric {
             name: format!("mode.{number}.frequency"),
-            unit: "Hz",
+            unit: "Hz".into(),
             doc: format!("natural frequency of mode {number}, counted from the lowest"),
             what: What::Frequency(place),
         },
         Metric {
             name: format!("mode.{number}.damping"),
-            unit: "1",
+            unit: "1".into(),
             doc: format!("damping ratio of mode {number}"),
             what: What::Damping(place),
         },

@@ -1,5 +1,6 @@
 //! A value for every parameter of a model, from given values, vehicle data and defaults.
 
+use crate::bounded;
 use crate::error::{Place, Problem};
 use crate::model::{About, Clock, Default};
 use crate::spelling::nearest;
@@ -71,7 +72,7 @@ impl ParameterError {
             Self::Missing { name, model, unit, doc } => (
                 "no value".to_owned(),
                 format!("a value in {unit} ({doc}), since model `{model}` has no default for it"),
-                format!("add a table [parameters.{name}]"),
+                missing_remedy(name, file),
             ),
             Self::NotFinite { value, .. } => (
                 value.to_string(),
@@ -80,6 +81,16 @@ impl ParameterError {
             ),
         };
         Problem::new(file, Place::Name(self.name().to_owned()), found, expected, remedy)
+    }
+}
+
+/// A campaign of `qcar new` or `qcar import` has a line to fill in, as a comment.
+fn missing_remedy(name: &str, file: &Path) -> String {
+    let line = format!("# {name} =");
+    let is_given = bounded::text(file).is_ok_and(|text| text.lines().any(|own| own.trim().starts_with(&line)));
+    match is_given {
+        true => format!("fill in the line `{line}`"),
+        false => format!("add a table [parameters.{name}]"),
     }
 }
 

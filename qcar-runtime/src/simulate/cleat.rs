@@ -54,8 +54,8 @@ fn road(campaign: &Campaign, name: &str) -> Result<Road, InputError> {
     let road = campaign.roads.iter().find(|road| road.name == name);
     let samples = campaign.road(road.expect("the campaign was checked for its roads"))?;
     Road::from_samples(&samples.x, &samples.z, &samples.slope).map_err(|error| {
-        let expected = "heights on which a tyre can roll";
-        Problem::new(&samples.file, Place::File, error.to_string(), expected, error.remedy()).into()
+        let (found, expected) = (error.to_string(), error.expected());
+        Problem::new(&samples.file, Place::File, found, expected, error.remedy()).into()
     })
 }
 

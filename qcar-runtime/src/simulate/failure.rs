@@ -2,7 +2,7 @@
 
 use crate::road::RoadError;
 use crate::roles::RoleError;
-use crate::shown::shown;
+use crate::shown::{rounded, shown};
 use crate::solver::Report;
 use crate::tyre::TyreError;
 
@@ -10,7 +10,7 @@ use crate::tyre::TyreError;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says it")]
 pub enum SimulateError {
-    #[error("{0}; {remedy}", remedy = .0.remedy())]
+    #[error("{0}, expected {expected}; {remedy}", expected = .0.expected(), remedy = .0.remedy())]
     Road(#[from] RoadError),
     #[error(transparent)]
     Tyre(#[from] TyreError),
@@ -29,9 +29,11 @@ pub enum SimulateError {
     #[error(transparent)]
     Role(#[from] RoleError),
     #[error(
-        "a sample rate of {rate} Hz is too low at {}: the contact patch is passed in {passage} s, \
-         which takes at least {least} Hz to be seen",
-        shown(*.speed, "m/s")
+        "a sample rate of {rate} Hz is too low at {}: the contact patch is passed in {} s, \
+         which takes at least {} Hz to be seen",
+        shown(*.speed, "m/s"),
+        rounded(*.passage, 4),
+        rounded(*.least, 4)
     )]
     TooFewSamples {
         rate: f64,

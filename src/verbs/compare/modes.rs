@@ -13,7 +13,7 @@ pub(super) struct Pair {
     pub b: Option<Shape>,
 }
 
-/// The modes of A by frequency, then those of B alone.
+/// The pairs by frequency: that of A, or of B for a mode that A lacks.
 pub(super) fn pairs([a, b]: &[Side; 2]) -> Vec<Pair> {
     let (first, second) = (of(a), of(b));
     let same = modes::pairs(&first, &second);
@@ -27,7 +27,10 @@ pub(super) fn pairs([a, b]: &[Side; 2]) -> Vec<Pair> {
         a: None,
         b: Some(shape(&second[place])),
     });
-    own.chain(added).collect()
+    let mut all: Vec<Pair> = own.chain(added).collect();
+    let frequency = |pair: &Pair| pair.a.as_ref().or(pair.b.as_ref()).map_or(0.0, |shape| shape.frequency);
+    all.sort_by(|one, other| frequency(one).total_cmp(&frequency(other)));
+    all
 }
 
 fn of(side: &Side) -> Vec<modes::Mode> {

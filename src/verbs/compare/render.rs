@@ -11,6 +11,7 @@ use super::parameters::Parameter;
 use super::ratios::Largest;
 use crate::table::{Table, noted, number, or_dash};
 use crate::units;
+use crate::verbs::study::shapes::Shape;
 
 /// The text for the terminal.
 pub(super) fn text(of: &Comparison, result: &Result, folder: Option<&Path>) -> String {
@@ -82,11 +83,28 @@ fn modes(of: &[Pair]) -> String {
     if of.is_empty() {
         return String::new();
     }
-    let mut table = Table::new(["mode", "A_Hz", "B_Hz", "change_%", "A_damping_%", "B_damping_%"]);
-    for (place, Pair { a, b }) in of.iter().enumerate() {
-        let [a, b] = [a, b].map(|mode| mode.as_ref().map(|mode| (mode.frequency, mode.damping)));
+    let mut table = Table::new([
+        "A_mode",
+        "B_mode",
+        "A_Hz",
+        "B_Hz",
+        "change_%",
+        "A_damping_%",
+        "B_damping_%",
+    ]);
+    // Each side counts its own modes from the lowest, as the metrics `mode.N.frequency` do.
+    let count = |side: fn(&Pair) -> Option<&Shape>, pair: &Pair| {
+        let own = side(pair)?.frequency;
+        let lower = of.iter().filter_map(side).filter(|mode| mode.frequency < own);
+        Some((lower.count() + 1).to_string())
+    };
+    for pair in of {
+        let numbers = [count(|pair| pair.a.as_ref(), pair), count(|pair| pair.b.as_ref(), pair)];
+        let [first, second] = numbers.map(|number| number.unwrap_or("-".into()));
+        let [a, b] = [&pair.a, &pair.b].map(|mode| mode.as_ref().map(|mode| (mode.frequency, mode.damping)));
         table.row(vec![
-            (place + 1).to_string(),
+            first,
+            second,
             or_dash(a.map(|mode| mode.0), 4),
             or_dash(b.map(|mode| mode.0), 4),
             percent(a.zip(b).map(|(a, b)| b.0 / a.0 - 1.0)),

@@ -180,17 +180,20 @@ fn tiles(of: &Answer) -> String {
         "to",
         "unit",
         "level",
+        "level_unit",
         "times_the_uncertainty",
     ]);
     for tile in of.discovery.before.misfit.tiles.iter().take(8) {
         let unit = unit_of_span(tile.kind);
+        let level = of.evidence.runs[tile.run].unit_of_level();
         table.row(vec![
             channel(&tile.sensor),
             tile.kind.order().map_or("-".into(), |order| order.to_string()),
             number(units::value(tile.span.0, unit), 3),
             number(units::value(tile.span.1, unit), 3),
             units::name(unit).into(),
-            number(tile.level, 3),
+            number(units::value(tile.level, level), 3),
+            units::name(level).into(),
             number(tile.strength, 3),
         ]);
     }

@@ -144,15 +144,9 @@ fn refuse_others(file: &Path, own: &Value, there: Option<&Value>) -> Result<(), 
         let keys = own.as_object()?.iter();
         let mut differing = keys.filter(|(key, value)| there.get(key) != Some(value));
         let (key, value) = differing.next()?;
-        let shown = |value: &Value| {
-            let text = value.to_string();
-            if text.len() > 60 { "something else".into() } else { text }
-        };
-        Some((
-            key.clone(),
-            there.get(key).map_or("nothing".into(), shown),
-            shown(value),
-        ))
+        let there = there.get(key).unwrap_or(&Value::Null);
+        let (key, there, own) = first_difference(key.clone(), there, value);
+        Some((key, shown(there), shown(own)))
     };
     let (found, expected) = match there.map(differs) {
         Some(None) => return Ok(()),
@@ -167,6 +161,49 @@ fn refuse_others(file: &Path, own: &Value, there: Option<&Value>) -> Result<(), 
     };
     let remedy = "choose another file, or remove it";
     Err(Problem::new(file, Place::File, found, expected, remedy).into())
+}
+
+/// Most characters of a value in a message.
+const LONGEST: usize = 120;
+
+/// The first difference of two values, with its key: of tables and long lists, that of their first entry that differs.
+fn first_difference<'a>(key: String, there: &'a Value, own: &'a Value) -> (String, &'a Value, &'a Value) {
+    let entry = match (there, own) {
+        (Value::Array(there), Value::Array(own)) if is_long(there) || is_long(own) => {
+            let mut pairs = there.iter().zip(own).enumerate();
+            let differing = pairs.find(|(_, (there, own))| there != own);
+            differing.map(|(at, (there, own))| (format!("{key}[{at}]"), there, own))
+        }
+        (Value::Object(there), Value::Object(own)) => {
+            let missing = there.iter().find(|(name, _)| !own.contains_key(*name));
+            let missing = missing.map(|(name, value)| (format!("{key}.{name}"), value, &Value::Null));
+            let differing = own.iter().find(|(name, value)| there.get(*name) != Some(*value));
+            let differing = differing
+                .map(|(name, value)| (format!("{key}.{name}"), there.get(name).unwrap_or(&Value::Null), value));
+            differing.or(missing)
+        }
+        _ => None,
+    };
+    match entry {
+        Some((key, there, own)) => first_difference(key, there, own),
+        None => (key, there, own),
+    }
+}
+
+fn is_long(list: &[Value]) -> bool {
+    list.iter().map(|value| value.to_string().len()).sum::<usize>() > LONGEST
+}
+
+/// A value for a message; of a long one, its beginning.
+fn shown(value: &Value) -> String {
+    match value.to_string() {
+        _ if value.is_null() => "absent".into(),
+        text if text.chars().count() > LONGEST => {
+            let beginning: String = text.chars().take(LONGEST).collect();
+            format!("{beginning}…")
+        }
+        text => text,
+    }
 }
 
 fn posterior(design: &Design) -> Option<PosteriorDescription> {

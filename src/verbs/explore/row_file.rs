@@ -88,9 +88,11 @@ fn write<M: Model + ?Sized>(
     let each = ensemble.rows_of_set() as u64;
     let block = (ROWS_OF_THREAD * rayon::current_num_threads()).div_ceil(each as usize) as u64;
     let showing = Showing::new();
-    showing.step(format!("{}: row", ensemble.model.about().name));
+    showing.step(format!("{}: after row", ensemble.model.about().name));
     let mut failed = Failed::default();
     let mut at = sets.start;
+    let shown_rows = |at: u64| showing.count(((at - first) * each) as usize, ((sets.end - first) * each) as usize);
+    shown_rows(at);
     while at < sets.end {
         let until = sets.end.min(at + block);
         let found = ensemble.rows(at..until);
@@ -102,7 +104,7 @@ fn write<M: Model + ?Sized>(
         sink.append(new)?;
         failed.count(at, &found, columns.len());
         at = until;
-        showing.count(((at - first) * each) as usize, ((sets.end - first) * each) as usize);
+        shown_rows(at);
     }
     Ok(failed)
 }

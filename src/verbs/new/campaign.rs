@@ -151,7 +151,7 @@ sample_rate = 1000.0
 # file = \"kc/bounce.csv\"
 # role = \"fit\"
 
-# Cleats, with the header line of the sweeps less the pads; `qcar simulate` compares with them.
+# Cleats, with the same columns as the sweeps, without the pads; `qcar simulate` compares with them.
 # [[run]]
 # kind = \"cleat\"
 # file = \"cleat/v30_h20.csv\"

@@ -1,5 +1,6 @@
 //! Sensitivities of each metric as means over its runs.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use qcar_runtime::metric::{Ground, MetricError, Reading};
@@ -50,7 +51,7 @@ pub(crate) struct Parameter {
 #[derive(Serialize)]
 pub(crate) struct MetricResult {
     pub name: String,
-    pub unit: &'static str,
+    pub unit: Cow<'static, str>,
     pub doc: String,
     /// Mean over the runs.
     pub value: f64,
@@ -186,7 +187,7 @@ fn result(
         .map(rounded);
     MetricResult {
         name: own.name.clone(),
-        unit: own.unit,
+        unit: own.unit.clone(),
         doc: own.doc.clone(),
         value,
         values: range.clone().map(|at| (run(at), local.values[at])).collect(),

@@ -88,13 +88,13 @@ pub(super) fn by_weight(of: &Sensitivity) -> Vec<usize> {
 fn values(of: &Sensitivity) -> Table {
     let mut table = Table::new(["metric", "value", "unit", "± (95 %)", "most of that by"]);
     for metric in &of.metrics {
-        let shown = |value: f64| number(units::value(value, metric.unit), 4);
+        let shown = |value: f64| number(units::value(value, &metric.unit), 4);
         let uncertainty = metric.uncertainty.as_ref();
         table.row(vec![
             metric.name.clone(),
             shown(metric.value),
-            units::name(metric.unit).into(),
-            uncertainty.map_or("-".into(), |uncertainty| reach(metric.value, uncertainty, metric.unit)),
+            units::name(&metric.unit).into(),
+            uncertainty.map_or("-".into(), |uncertainty| reach(metric.value, uncertainty, &metric.unit)),
             uncertainty.map_or("-".into(), |uncertainty| largest(&uncertainty.shares.0)),
         ]);
     }
@@ -143,8 +143,8 @@ pub(super) fn csv(of: &Sensitivity) -> String {
                 out,
                 "{},{},{},{},{},{},{},{},{},{}",
                 metric.name,
-                units::name(metric.unit),
-                units::value(metric.value, metric.unit),
+                units::name(&metric.unit),
+                units::value(metric.value, &metric.unit),
                 parameter.name,
                 units::name(&parameter.unit),
                 units::value(parameter.value, &parameter.unit),

@@ -134,9 +134,9 @@ fn text(of: &Compared) -> String {
         "mass",
         "axis",
         "unit",
-        "peak",
+        "measured_peak",
         "peak_error_%",
-        "after_shake",
+        "measured_after_shake",
         "after_shake_error_%",
     ]);
     let shown = |value| units::value(value, ACCELERATION);
@@ -190,9 +190,15 @@ fn guess(at_start: &[String]) -> String {
     match at_start {
         [] => String::new(),
         names => format!(
-            "\nnote: {} still have the start values of the campaign; the simulation is only as good as these. `qcar discover --out` \
-             estimates those that the runs with the role fit determine\n",
-            names.join(", ")
+            "\nnote: {} still {}; the simulation is only as good as {}. `qcar fit --out` and `qcar discover --out` estimate what the \
+             runs with the role fit determine\n",
+            names.join(", "),
+            if names.len() == 1 {
+                "has the start value of the campaign"
+            } else {
+                "have the start values of the campaign"
+            },
+            if names.len() == 1 { "this" } else { "these" },
         ),
     }
 }

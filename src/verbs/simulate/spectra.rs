@@ -92,7 +92,7 @@ fn shown(density: f64, si: &str) -> f64 {
 }
 
 fn squared(si: &str) -> String {
-    match units::name(si) {
+    match &*units::name(si) {
         product if product.contains(['/', ' ', '^']) => format!("({product})^2/Hz"),
         plain => format!("{plain}^2/Hz"),
     }

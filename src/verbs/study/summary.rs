@@ -131,14 +131,14 @@ fn cleats(of: &Track) -> String {
 
 /// Names parameters that no rig run determines: the rides of the rig fit use their start values.
 fn at_start(names: &[String]) -> String {
-    let has = if names.len() == 1 {
-        "has its start value"
+    let (keeps, them) = if names.len() == 1 {
+        ("keeps its start value", "it")
     } else {
-        "have their start values"
+        ("keep their start values", "them")
     };
     match names {
         [] => String::new(),
-        names => format!("before: no rig run determines {}, which {has}\n", names.join(", ")),
+        names => format!("before: {} {keeps} (no rig run determines {them})\n", names.join(", ")),
     }
 }
 

@@ -156,7 +156,7 @@ fn aims(ground: &Ground<'_>, fronts: &[(usize, Sense)], measured: usize) -> Vec<
     let metrics = ground.metrics();
     let aim = |(at, (metric, sense)): (usize, &(usize, Sense))| Aim {
         metric: metrics[*metric].name.clone(),
-        unit: metrics[*metric].unit.into(),
+        unit: metrics[*metric].unit.to_string(),
         result: measured + at,
         sense: *sense,
     };

@@ -1,7 +1,7 @@
 //! The data set: series of measured values with their uncertainty.
 
 use super::run::Run;
-use super::sensor::{is_known, nearest_place};
+use super::sensor::{is_known, missing};
 use super::series::Series;
 use crate::campaign::Role;
 use crate::discover::numbers::Numbers;
@@ -56,13 +56,9 @@ impl Evidence {
     pub(super) fn keep_known(&mut self, about: &About, run: &str, points: Vec<Point>) -> Vec<Point> {
         let (known, unknown): (Vec<_>, Vec<_>) = points.into_iter().partition(|point| is_known(about, point));
         for point in unknown {
-            let (location, axis) = (&point.location, point.axis.name());
-            let meant = match nearest_place(about, &point) {
-                Some(nearest) => format!("; did you mean `{nearest}`?"),
-                None => String::new(),
-            };
-            let notice = format!("{run}: the model has no `{location}` along {axis}; that sensor is left out{meant}");
-            self.notices.push(notice);
+            let [what, remedy] = missing(about, &point);
+            self.notices
+                .push(format!("{run}: {what}, so that sensor is left out; {remedy}"));
         }
         known
     }

@@ -72,6 +72,21 @@ pub fn nearest_place<'a>(about: &'a About, point: &Point) -> Option<&'a str> {
     nearest(&point.location, along).filter(|nearest| *nearest != point.location)
 }
 
+/// What a model does not give for a sensor, and the remedy.
+pub fn missing(about: &About, point: &Point) -> [String; 2] {
+    let (location, model) = (&point.location, &about.name);
+    let (quantity, axis) = (point.quantity.name(), point.axis.name());
+    let remedy = match nearest_place(about, point) {
+        Some(nearest) => format!("did you mean `{nearest}`?"),
+        None => format!(
+            "if it should, add `output {location}.{};` to the model",
+            point.kind(about).word()
+        ),
+    };
+    let what = format!("model `{model}` gives no {quantity} of `{location}` along {axis}");
+    [what, remedy]
+}
+
 /// True if the sensor measures a motion that drives the model.
 pub fn is_motion(about: &About, point: &Point) -> bool {
     excitation_of(about, point).is_some_and(|place| !about.excitations[place].force)

@@ -136,8 +136,8 @@ impl Nonlinear {
         }
         out += &format!("\n{} starts, {}\n", self.starts, self.other_minima());
         if gap.fit > MUCH {
-            out += "note: the residuals are far above noise, which the standard errors do not account for: the model \
-                    lacks something (`qcar discover` looks for it)\n";
+            out += "note: the residuals exceed the noise; the standard errors are therefore too small, and the model lacks \
+                    something (`qcar discover` looks for it)\n";
         }
         out += &noted(&self.campaign.notices);
         let mut table = Table::new(["channel", "run", "left_%_of_signal"]);

@@ -41,7 +41,7 @@ fn table(
     for (at, (heading, unit)) in (0..).zip(&columns) {
         sheet.set_column_width(at, heading.len().max(10) as f64 + 2.0)?;
         sheet.write_string_with_format(0, at, heading, &formats.heading)?;
-        sheet.write_string_with_format(1, at, units::name(unit), &formats.input)?;
+        sheet.write_string_with_format(1, at, &*units::name(unit), &formats.input)?;
     }
     sheet.set_freeze_panes(2, 0)?;
     let number = DataValidation::new()

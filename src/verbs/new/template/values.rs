@@ -142,7 +142,7 @@ impl Sheet<'_> {
             .range
             .map(|(low, high)| [low, high].map(|end| units::value(end, &row.unit)));
         if let Some([low, high]) = range {
-            let plausible = validation(low, high, units::name(&row.unit))?;
+            let plausible = validation(low, high, &units::name(&row.unit))?;
             self.sheet.add_data_validation(at, column, at, column, &plausible)?;
         }
         for (offset, end) in [(2, range.map(|ends| ends[0])), (3, range.map(|ends| ends[1]))] {
@@ -158,10 +158,11 @@ impl Sheet<'_> {
     fn measured(&mut self, at: u32, column: u16, name: &str, si: &str, given: Option<f64>) -> Result<(), XlsxError> {
         self.number(at, column, given.map(|value| units::value(value, si)))?;
         self.names.push((name.into(), at, column));
-        let mut choices = vec![units::name(si), si];
+        let shown = units::name(si);
+        let mut choices = vec![&*shown, si];
         choices.extend(others(si));
         choices.dedup();
-        self.word(at, column + 1, &format!("{name}.unit"), units::name(si), &choices)
+        self.word(at, column + 1, &format!("{name}.unit"), &shown, &choices)
     }
 
     fn number(&mut self, at: u32, column: u16, value: Option<f64>) -> Result<(), XlsxError> {

@@ -127,7 +127,7 @@ impl<'a> Planner<'a, '_> {
                     .position(|own| own == reading)
                     .expect("all are measured");
                 let metric = &self.ground.metrics()[reading.metric];
-                let (name, unit) = (metric.name.clone(), metric.unit);
+                let (name, unit) = (metric.name.clone(), metric.unit.clone());
                 let run = reading.course.map(|run| self.ground.courses()[run].name.clone());
                 let sides = [
                     (&target.at_most, Sense::AtMost, "target.at_most"),
@@ -137,7 +137,7 @@ impl<'a> Planner<'a, '_> {
                 ];
                 for (amount, sense, key) in sides {
                     let Some(at) = amount else { continue };
-                    let Some(value) = self.amount(at.get_ref(), at, key, unit, today[result]) else {
+                    let Some(value) = self.amount(at.get_ref(), at, key, &unit, today[result]) else {
                         continue;
                     };
                     let limit = Limit {
@@ -148,7 +148,7 @@ impl<'a> Planner<'a, '_> {
                         margin: 0.0,
                     };
                     if let Some(other) = limits.iter().find(|other| contradict(other, &limit)) {
-                        self.contradiction((at, key), [value, other.value], (&name, run.as_deref(), unit));
+                        self.contradiction((at, key), [value, other.value], (&name, run.as_deref(), &unit));
                         continue;
                     }
                     if limits.contains(&limit) {
@@ -158,7 +158,7 @@ impl<'a> Planner<'a, '_> {
                     wanted.push(Wanted {
                         metric: name.clone(),
                         run: run.clone(),
-                        unit: unit.into(),
+                        unit: unit.to_string(),
                     });
                 }
             }
