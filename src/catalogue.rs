@@ -16,6 +16,7 @@ use qcar_machine::Machine;
 use qcar_runtime::campaign::Campaign;
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::model::Model;
+use qcar_runtime::spelling;
 
 use crate::failure::{Failure, flag};
 use crate::files::read_text;
@@ -155,7 +156,8 @@ pub fn named_by(campaign: &Campaign, wanted: Option<&str>) -> Result<String, Fai
     if wanted.is_none() && models::find(&campaign.model).is_none() && !looks_like_a_path(&campaign.model) {
         let (place, found) = (Place::Name("model".into()), format!("`{}`", campaign.model));
         let remedy = format!(
-            "choose among {}, or give a model file, such as `model = \"{}.axle\"`, relative to the folder of the campaign",
+            "{}choose among {}, or give a model file, such as `model = \"{}.axle\"`, relative to the folder of the campaign",
+            suggestion(&campaign.model),
             listed(),
             campaign.model
         );
@@ -260,8 +262,14 @@ pub fn looks_like_a_path(name: &str) -> bool {
     name.contains(['/', '\\', '.'])
 }
 
+/// The shipped model with the nearest name as a question, or nothing.
+fn suggestion(model: &str) -> String {
+    let nearest = spelling::nearest(model, names());
+    nearest.map_or(String::new(), |own| format!("did you mean `{own}`? Otherwise "))
+}
+
 fn unknown(model: &str) -> Problem {
-    let remedy = format!("choose among {}, or give the path of a file", listed());
+    let remedy = format!("{}choose among {}, or give the path of a file", suggestion(model), listed());
     flag(
         "MODEL",
         format!("`{model}`"),

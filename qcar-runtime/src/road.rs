@@ -4,7 +4,7 @@
 //! integrals over the ground between two points, which are differences of two prefix integrals. So a query costs the
 //! same for a plank and for a measured road of a million samples.
 
-use crate::shown::shown;
+use crate::shown::{shown, six_digits};
 
 mod bounds;
 mod integrals;
@@ -61,6 +61,8 @@ pub enum RoadError {
     NoLength { x: f64 },
     #[error("slope {slope} at x = {} contradicts the heights there, which rise by {rise}", shown(*.x, "m"))]
     SlopeContradictsHeight { x: f64, slope: f64, rise: f64 },
+    #[error("slopes that are {} times as steep as the heights rise over x", six_digits(*.factor))]
+    SlopeInOtherUnit { factor: f64 },
     #[error(
         "the road is rougher than its sampling: leaving out a sample changes it by {share:.2} of its own standard deviation, more than {limit}"
     )]
@@ -83,6 +85,9 @@ impl RoadError {
             Self::Rough { .. } => "sample the profile finer, or smooth it",
             Self::SlopeContradictsHeight { .. } => {
                 "leave out the column `slope`, or give the slope of the segment to the right of each point; a step stands alone"
+            }
+            Self::SlopeInOtherUnit { .. } => {
+                "correct the units of x, z and slope in the header line, such as `z [mm]`, or leave out the column `slope`"
             }
             Self::TooShort { .. } => "lengthen the road, or shorten the ride",
             _ => "correct the profile: finite numbers, from left to right",
@@ -108,7 +113,8 @@ impl Road {
     ///
     /// # Errors
     /// Fails if columns differ in length, if there are too few samples, if a number is not finite, if x decreases, if a
-    /// slope contradicts the heights at two successive samples, or if the road is too rough for its sampling: it
+    /// slope contradicts the heights at two successive samples, if the slopes are a multiple of the rises of the heights
+    /// (by a factor above 2 or below 1/2, as a wrong unit gives it), or if the road is too rough for its sampling: it
     /// changes by more than a quarter of its standard deviation (RMS) if each sample is replaced by the line through
     /// its neighbours, which for a sine is about nine samples per wavelength. A few points at uneven distances, whose
     /// slopes lead exactly from one to the next, are corners of a profile and not samples of a curve; a cleat may be
