@@ -269,7 +269,11 @@ fn suggestion(model: &str) -> String {
 }
 
 fn unknown(model: &str) -> Problem {
-    let remedy = format!("{}choose among {}, or give the path of a file", suggestion(model), listed());
+    let remedy = format!(
+        "{}choose among {}, or give the path of a file",
+        suggestion(model),
+        listed()
+    );
     flag(
         "MODEL",
         format!("`{model}`"),

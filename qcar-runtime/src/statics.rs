@@ -56,7 +56,10 @@ fn with_stiffness(about: &About, campaign: &Campaign, load: f64) -> Option<Strin
 /// The one stiffness of the tyre, with its range or its value in the campaign, otherwise with its range in the model.
 fn stiffness<'a>(about: &'a About, campaign: &Campaign) -> Option<(&'a str, (f64, f64))> {
     let link = &about.links[usize::from(about.contact.as_ref()?.link)];
-    let parameters = link.parameters.iter().map(|&place| &about.parameters[usize::from(place)]);
+    let parameters = link
+        .parameters
+        .iter()
+        .map(|&place| &about.parameters[usize::from(place)]);
     let mut stiffnesses = parameters.filter(|own| dimension(&own.unit) == Some(STIFFNESS));
     let own = stiffnesses.next().filter(|_| stiffnesses.next().is_none())?;
     let stated = campaign.parameter(&own.name);

@@ -21,7 +21,13 @@ pub fn of_toml(file: &Path, text: &str, error: &toml::de::Error, else_do: &str) 
     }
     let (what, expected) = words(error.message());
     let expected = expected.unwrap_or_else(|| "TOML, such as `name = value` or `[table]`".into());
-    Problem::new(file, place, quoted(line, &what), expected, remedy(&what).unwrap_or(else_do))
+    Problem::new(
+        file,
+        place,
+        quoted(line, &what),
+        expected,
+        remedy(&what).unwrap_or(else_do),
+    )
 }
 
 /// The problem of a text that is no JSON.
@@ -72,7 +78,10 @@ fn remedy(what: &str) -> Option<&'static str> {
         ("must be quoted", "put the text in quotes"),
         ("the unknown key", "correct its name or remove it"),
     ];
-    known.into_iter().find(|(words, _)| what.contains(words)).map(|(_, remedy)| remedy)
+    known
+        .into_iter()
+        .find(|(words, _)| what.contains(words))
+        .map(|(_, remedy)| remedy)
 }
 
 /// The first number with a decimal comma that is the value of a line, such as `3,5` of `k = 3,5`.

@@ -459,7 +459,11 @@ fn a_sine_agrees_with_itself_and_with_its_set_values() {
     let slow = refused(
         sine([1.0, 1.0]).replace("velocity", "velocity [mm/s]"),
         none,
-        &["dynamic.csv, `velocity`", "velocities of 0.00", "such as `velocity [mm/s]`"],
+        &[
+            "dynamic.csv, `velocity`",
+            "velocities of 0.00",
+            "such as `velocity [mm/s]`",
+        ],
     );
     assert!(slow.contains("0.001 times `peak_velocity`"), "{slow}");
     refused(sine([-1.0, 1.0]), none, &["velocities of -1.0", "or a sign"]);
@@ -474,7 +478,10 @@ fn a_sine_agrees_with_itself_and_with_its_set_values() {
     refused(
         sine([1.0, 1.0]),
         amplitude,
-        &["dynamic.csv, `displacement`: found an amplitude of 0.0", "0.001 times `amplitude`"],
+        &[
+            "dynamic.csv, `displacement`: found an amplitude of 0.0",
+            "0.001 times `amplitude`",
+        ],
     );
 }
 
@@ -498,7 +505,11 @@ fn a_dynamometer_has_speeds_that_its_sines_reach() {
     forces(&format!("velocity,force\n{rows}"), "50 mm").unwrap();
     // Friction at creeping speeds alone.
     forces("velocity,force\n-0.002,-80\n0.002,80\n", "25 mm").unwrap();
-    for (header, amplitude) in [("velocity [mm/s],force", "50 mm"), ("velocity,force", "50 m"), ("velocity,force", "50 um")] {
+    for (header, amplitude) in [
+        ("velocity [mm/s],force", "50 mm"),
+        ("velocity,force", "50 m"),
+        ("velocity,force", "50 um"),
+    ] {
         let said = forces(&format!("{header}\n{rows}"), amplitude).unwrap_err();
         assert!(
             said.contains("t.csv, `velocity`: found a largest speed of") && said.contains("from 0.01 to 100 Hz"),
@@ -506,7 +517,10 @@ fn a_dynamometer_has_speeds_that_its_sines_reach() {
         );
     }
     let said = forces("velocity,force\n0.1,110\n", "50 mm").unwrap_err();
-    assert!(said.contains("t.csv: found a single row, expected at least two"), "{said}");
+    assert!(
+        said.contains("t.csv: found a single row, expected at least two"),
+        "{said}"
+    );
 }
 
 /// Each says in one sentence what to write.
@@ -522,7 +536,9 @@ fn tables_of_other_programs_are_told_how_to_be_read() {
         let text = SWEEP.replace(',', separator);
         let said = said(("sweep.csv", SWEEP, &text));
         assert!(
-            said.contains(&format!("sweep.csv, line 1: found columns that are separated by {name}, expected commas")),
+            said.contains(&format!(
+                "sweep.csv, line 1: found columns that are separated by {name}, expected commas"
+            )),
             "{said}"
         );
         assert!(said.contains("rename it to end in .txt"), "{said}");
@@ -557,10 +573,26 @@ fn broken_toml_is_told_with_its_line_and_a_remedy() {
         Campaign::open(folder.path()).unwrap_err().to_string()
     };
     let cases = [
-        ("m_corner = 400", "m_corner = 400,5", ["found `400,5`", "a number such as 400.5", "write a decimal point"]),
-        ("[vehicle]", "[vehicle", ["line 6", "in `[vehicle`", "close it on this line"]),
-        ("gravity = 9.81", "m_corner = 401", ["line 8", "in `m_corner = 401`", "rename or remove one of the two"]),
-        ("name = \"bench\"", "name = bench", ["line 2", "in `name = bench`", "put the text in quotes"]),
+        (
+            "m_corner = 400",
+            "m_corner = 400,5",
+            ["found `400,5`", "a number such as 400.5", "write a decimal point"],
+        ),
+        (
+            "[vehicle]",
+            "[vehicle",
+            ["line 6", "in `[vehicle`", "close it on this line"],
+        ),
+        (
+            "gravity = 9.81",
+            "m_corner = 401",
+            ["line 8", "in `m_corner = 401`", "rename or remove one of the two"],
+        ),
+        (
+            "name = \"bench\"",
+            "name = bench",
+            ["line 2", "in `name = bench`", "put the text in quotes"],
+        ),
     ];
     for (old, new, fragments) in cases {
         let said = said(old, new);
@@ -578,7 +610,10 @@ fn the_file_of_a_campaign_stands_for_its_folder() {
     assert_eq!(opened.folder, folder.path());
     fs::remove_file(&file).unwrap();
     let error = Campaign::open(folder.path()).unwrap_err().to_string();
-    assert!(error.contains("campaign.toml: found no such file, expected a readable text file"), "{error}");
+    assert!(
+        error.contains("campaign.toml: found no such file, expected a readable text file"),
+        "{error}"
+    );
 }
 
 #[test]

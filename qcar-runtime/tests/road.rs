@@ -298,7 +298,10 @@ fn slopes_that_are_a_multiple_of_the_rises_are_refused() {
     let per_cent: Vec<f64> = slope.iter().map(|slope| slope * 0.01).collect();
     let found = Road::from_samples(&x, &z, &per_cent);
     assert!(matches!(found, Err(RoadError::SlopeInOtherUnit { .. })), "{found:?}");
-    assert!(Road::from_samples(&x, &z, &vec![0.0; x.len()]).is_ok(), "slopes that say nothing");
+    assert!(
+        Road::from_samples(&x, &z, &vec![0.0; x.len()]).is_ok(),
+        "slopes that say nothing"
+    );
 }
 
 /// A slope that a profilometer smooths over a metre, or in which noise is as large as the slope, is one of this road.
@@ -307,14 +310,20 @@ fn slopes_of_a_measured_road_may_be_smooth_or_noisy() {
     let x: Vec<f64> = (0..4000).map(|i| 0.01 * f64::from(i)).collect();
     let height = |x: f64| 0.01 * (0.7 * x).sin() + 0.002 * (9.0 * x).sin();
     let z: Vec<f64> = x.iter().map(|&x| height(x)).collect();
-    let smooth: Vec<f64> = x.iter().map(|&x| (height(x + 0.505) - height(x - 0.495)) / 1.0).collect();
+    let smooth: Vec<f64> = x
+        .iter()
+        .map(|&x| (height(x + 0.505) - height(x - 0.495)) / 1.0)
+        .collect();
     Road::from_samples(&x, &z, &smooth).unwrap();
     let mut state = 5u32;
     let mut noise = || {
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         0.06 * (f64::from(state) / f64::from(u32::MAX) - 0.5)
     };
-    let noisy: Vec<f64> = x.iter().map(|&x| (height(x + 0.01) - height(x)) / 0.01 + noise()).collect();
+    let noisy: Vec<f64> = x
+        .iter()
+        .map(|&x| (height(x + 0.01) - height(x)) / 0.01 + noise())
+        .collect();
     Road::from_samples(&x, &z, &noisy).unwrap();
 }
 

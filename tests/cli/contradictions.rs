@@ -38,10 +38,26 @@ fn found(campaign: &TempDir, verb: &str, verdict: &str, said: &str) {
 #[test]
 fn check_finds_what_a_fit_refuses() {
     let unfit = |old: &str, new: &str, said: &str| found(&with(old, new), "fit", "cannot be fitted", said);
-    unfit("peak_velocity = 0.025", "peak_velocity = 25", "expected one near `peak_velocity = 25`");
-    unfit("location = \"wheel\"", "location = \"hub\"", "found `hub` along z, expected a place of model `axle_a`");
-    unfit("spacing = \"logarithmic\"", "spacing = \"linear\"", "write `spacing = \"logarithmic\"`");
-    unfit("end_frequency = 30.0", "end_frequency = 60.0", "expected a sweep to `end_frequency = 60`");
+    unfit(
+        "peak_velocity = 0.025",
+        "peak_velocity = 25",
+        "expected one near `peak_velocity = 25`",
+    );
+    unfit(
+        "location = \"wheel\"",
+        "location = \"hub\"",
+        "found `hub` along z, expected a place of model `axle_a`",
+    );
+    unfit(
+        "spacing = \"logarithmic\"",
+        "spacing = \"linear\"",
+        "write `spacing = \"logarithmic\"`",
+    );
+    unfit(
+        "end_frequency = 30.0",
+        "end_frequency = 60.0",
+        "expected a sweep to `end_frequency = 60`",
+    );
 }
 
 #[test]
@@ -50,14 +66,21 @@ fn check_finds_what_kc_refuses() {
         found(&with(old, new), "kc", "has runs that cannot be used", said);
     };
     unusable("amplitude = 0.02", "amplitude = 20", "an amplitude of 0.0");
-    unusable("peak_velocity = 0.125", "peak_velocity = 12.5", "a peak velocity of 0.12");
+    unusable(
+        "peak_velocity = 0.125",
+        "peak_velocity = 12.5",
+        "a peak velocity of 0.12",
+    );
 }
 
 #[test]
 fn vehicle_data_that_contradict_each_other_are_noticed() {
     let impossible = with("r_tire = 0.35", "r_tire = 350");
     for verb in ["check", "simulate", "fit"] {
-        let said = ["`vehicle.r_tire`: found 350, expected the radius of an unloaded tyre, from 0.01 to 2.5 m", "\"350 mm\""];
+        let said = [
+            "`vehicle.r_tire`: found 350, expected the radius of an unloaded tyre, from 0.01 to 2.5 m",
+            "\"350 mm\"",
+        ];
         common::refused(&run(verb, &impossible), &said);
     }
     let doubtful = with("static_tire_load = 4815.7", "static_tire_load = 4.8157");

@@ -94,7 +94,11 @@ fn a_check_of_a_campaign_refuses_what_its_other_verbs_refuse() {
     check(
         "r_tire = ",
         "r_tire = -",
-        &["campaign.toml", "`vehicle.r_tire`: found -0.35", "correct the value or its unit"],
+        &[
+            "campaign.toml",
+            "`vehicle.r_tire`: found -0.35",
+            "correct the value or its unit",
+        ],
     );
     let checked = qcar(&["check", misplaced().path().to_str().unwrap()]);
     assert_eq!(checked.status, 1, "{}", checked.stderr);

@@ -111,7 +111,11 @@ impl DynamicCurve {
         let of_key = |(column, what): (&str, &str), (recorded, set): (f64, f64), (key, si): (&str, &str)| {
             let factor = recorded / set;
             let wrong = || {
-                let found = format!("{what} of {}, {} times `{key}`", shown(recorded, si), six_digits(factor));
+                let found = format!(
+                    "{what} of {}, {} times `{key}`",
+                    shown(recorded, si),
+                    six_digits(factor)
+                );
                 let expected = format!("one near `{key} = {set}` of the run");
                 let remedy = format!("correct `{key}` in campaign.toml, or the unit of the column");
                 problem(column, found, expected, &remedy)

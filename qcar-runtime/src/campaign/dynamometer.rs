@@ -87,7 +87,10 @@ fn stated(test: &Dynamometer, each: Option<Vec<f64>>, rows: usize, file: &Path) 
 
 impl ForceTable {
     fn too_few(&self) -> Option<Problem> {
-        let (found, expected) = ("a single row", "at least two: a force in rebound and one in compression");
+        let (found, expected) = (
+            "a single row",
+            "at least two: a force in rebound and one in compression",
+        );
         let problem = || Problem::new(&self.file, Place::File, found, expected, "export the whole table");
         (self.velocity.len() < FEWEST).then(problem)
     }

@@ -71,7 +71,11 @@ impl Campaign {
 fn folder_of(given: &Path) -> &Path {
     let is_manifest = given.ends_with("campaign.toml") && given.is_file();
     let folder = given.parent().filter(|_| is_manifest).unwrap_or(given);
-    if folder.as_os_str().is_empty() { Path::new(".") } else { folder }
+    if folder.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        folder
+    }
 }
 
 fn campaign(folder: &Path, top: Section<'_>, files: &Files) -> Option<Campaign> {

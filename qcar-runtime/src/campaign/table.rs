@@ -139,7 +139,11 @@ pub(super) fn check_names(file: &Path, names: &[String], required: &[&str], allo
     let is_known = |name: &String| known.contains(&name.as_str());
     // A misspelt name is reported once, at its own place.
     let misspelt = |name: &String| nearest(name, &known).filter(|own| !names.iter().any(|other| other == own));
-    let meant: Vec<&str> = names.iter().filter(|name| !is_known(name)).filter_map(misspelt).collect();
+    let meant: Vec<&str> = names
+        .iter()
+        .filter(|name| !is_known(name))
+        .filter_map(misspelt)
+        .collect();
     let missing = required.iter().filter(|name| !names.iter().any(|n| n == *name));
     for name in missing.filter(|name| !meant.contains(name)) {
         let found = format!("the columns {}", list(names));
@@ -282,7 +286,10 @@ fn separated_by_commas(file: &Path, only: &str) -> Result<(), InputError> {
     let Some((_, name)) = found else { return Ok(()) };
     let remedy = "export it with commas and decimal points; or rename it to end in .txt, which is read with any separator \
                   and with decimal commas like a file of a rig (`qcar inspect` shows its channels)";
-    let (found, expected) = (format!("columns that are separated by {name}"), "commas, as in a plain table");
+    let (found, expected) = (
+        format!("columns that are separated by {name}"),
+        "commas, as in a plain table",
+    );
     Err(Problem::new(file, Place::Line(1), found, expected, remedy).into())
 }
 

@@ -44,5 +44,12 @@ pub(super) fn check(history: &History, reference: &Point, excitation: &[f64]) ->
         format!("`spacing = \"{}\"`", name[0]),
         format!("write `spacing = \"{}\"` in campaign.toml", name[1]),
     );
-    Err(Problem::new(&history.file, Place::Name(reference.to_string()), found, expected, remedy).into())
+    Err(Problem::new(
+        &history.file,
+        Place::Name(reference.to_string()),
+        found,
+        expected,
+        remedy,
+    )
+    .into())
 }

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use qcar_runtime::campaign::Declared;
 use qcar_runtime::error::{InputError, Place, Problem};
-use serde::Deserialize;
 use qcar_runtime::syntax;
+use serde::Deserialize;
 use toml::Spanned;
 
 use crate::catalogue;
