@@ -4,7 +4,7 @@
 //! integrals over the ground between two points, which are differences of two prefix integrals. So a query costs the
 //! same for a plank and for a measured road of a million samples.
 
-use crate::shown::{shown, six_digits};
+use crate::shown::{rounded, shown};
 
 mod bounds;
 mod integrals;
@@ -61,7 +61,7 @@ pub enum RoadError {
     NoLength { x: f64 },
     #[error("slope {slope} at x = {} contradicts the heights there, which rise by {rise}", shown(*.x, "m"))]
     SlopeContradictsHeight { x: f64, slope: f64, rise: f64 },
-    #[error("slopes that are {} times as steep as the heights rise over x", six_digits(*.factor))]
+    #[error("slopes that are {} times as steep as the heights rise over x", rounded(*.factor, 3))]
     SlopeInOtherUnit { factor: f64 },
     #[error(
         "the road is rougher than its sampling: leaving out a sample changes it by {share:.2} of its own standard deviation, more than {limit}"

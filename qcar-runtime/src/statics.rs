@@ -3,7 +3,7 @@
 use crate::campaign::{Campaign, dimension};
 use crate::model::About;
 use crate::proportion::is_alike;
-use crate::shown::{shown, six_digits};
+use crate::shown::{rounded, shown};
 
 /// Standard gravity, m/s^2, where a campaign gives none.
 const GRAVITY: f64 = 9.80665;
@@ -29,7 +29,7 @@ fn with_mass(campaign: &Campaign, load: f64) -> Option<String> {
         format!(
             "static_tire_load = {} is {} times the weight of m_corner = {}, {}; correct one of them or its unit",
             shown(load, "N"),
-            six_digits(factor),
+            rounded(factor, 3),
             shown(mass, "kg"),
             shown(weight, "N")
         )
@@ -47,7 +47,7 @@ fn with_stiffness(about: &About, campaign: &Campaign, load: f64) -> Option<Strin
         format!(
             "static_tire_load over static_tire_def is {}, {} times `{name}` = {}; correct one of them or its unit",
             shown(secant, "N/m"),
-            six_digits(factor),
+            rounded(factor, 3),
             shown(nearest, "N/m")
         )
     })

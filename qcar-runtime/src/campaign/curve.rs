@@ -7,7 +7,7 @@ use super::manifest::{CURVE, DYNAMIC_CURVE};
 use super::table::{self, Table};
 use crate::error::{InputError, Place, Problem};
 use crate::proportion::{Proportion, is_alike};
-use crate::shown::{shown, six_digits};
+use crate::shown::{rounded, shown};
 
 /// A slow cycle: forces relative to the design position; compression is positive in a bounce.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,7 +114,7 @@ impl DynamicCurve {
                 let found = format!(
                     "{what} of {}, {} times `{key}`",
                     shown(recorded, si),
-                    six_digits(factor)
+                    rounded(factor, 3)
                 );
                 let expected = format!("one near `{key} = {set}` of the run");
                 let remedy = format!("correct `{key}` in campaign.toml, or the unit of the column");
@@ -126,7 +126,7 @@ impl DynamicCurve {
         let of_rate = rate.map(|factor| {
             problem(
                 "velocity",
-                format!("velocities of {} times the rate of the displacement", six_digits(factor)),
+                format!("velocities of {} times the rate of the displacement", rounded(factor, 3)),
                 "the rate of the displacement over time".into(),
                 "correct the unit of `time`, `displacement` or `velocity` in the file, such as `velocity [mm/s]`, or a sign",
             )
@@ -155,7 +155,7 @@ impl DynamicCurve {
     }
 }
 
-/// Share of the samples below the amplitude of a sine. That of a whole sine is 0.3 % below its peak there; single spikes
+/// Share of the samples below the amplitude of a sine. A whole sine is at most 1.2 % below its peak there; single spikes
 /// are above.
 const MOST: f64 = 0.95;
 
