@@ -51,6 +51,7 @@ pub fn words(message: &str) -> (String, Option<String>) {
     }
     let message = message.replace("unknown field ", "the unknown key ");
     match message.split_once(", expected ") {
+        Some(("string values must be quoted", _)) => ("a text without quotes".into(), Some("a text in quotes".into())),
         Some((what, "nothing")) => (what.into(), Some("nothing more on this line".into())),
         Some((what, "newline, `#`")) => (what.into(), Some("the end of the line, or a comment after `#`".into())),
         Some((what, expected)) => (what.into(), Some(expected.into())),
@@ -75,7 +76,7 @@ fn remedy(what: &str) -> Option<&'static str> {
     let known = [
         ("unclosed", "close it on this line"),
         ("duplicate key", "rename or remove one of the two"),
-        ("must be quoted", "put the text in quotes"),
+        ("without quotes", "put the text in quotes"),
         ("the unknown key", "correct its name or remove it"),
     ];
     known
