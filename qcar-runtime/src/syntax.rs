@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::error::{Place, Problem};
+use crate::spelling;
 
 /// Most characters of a line that a message quotes.
 const MOST: usize = 60;
@@ -21,13 +22,8 @@ pub fn of_toml(file: &Path, text: &str, error: &toml::de::Error, else_do: &str) 
     }
     let (what, expected) = words(error.message());
     let expected = expected.unwrap_or_else(|| "TOML, such as `name = value` or `[table]`".into());
-    Problem::new(
-        file,
-        place,
-        quoted(line, &what),
-        expected,
-        remedy(&what).unwrap_or(else_do),
-    )
+    let remedy = remedy(&what, &expected).unwrap_or_else(|| else_do.into());
+    Problem::new(file, place, quoted(line, &what), expected, remedy)
 }
 
 /// The problem of a text that is no JSON.
@@ -68,21 +64,25 @@ fn quoted(line: &str, what: &str) -> String {
         ("", "") => "the end of the text".into(),
         ("", what) => what.into(),
         (_, "") => format!("`{cut}{dots}`"),
+        // The line of a missing key is not where it is missing.
+        (_, what) if what.starts_with("no `") => what.into(),
         (_, what) => format!("{what} in `{cut}{dots}`"),
     }
 }
 
-fn remedy(what: &str) -> Option<&'static str> {
+/// `expected` names the known keys in backticks where `what` is an unknown one.
+fn remedy(what: &str, expected: &str) -> Option<String> {
+    if let Some(key) = what.strip_prefix("the unknown key ") {
+        let known = expected.split('`').skip(1).step_by(2);
+        return Some(spelling::remedy(key.trim_matches('`'), known));
+    }
     let known = [
         ("unclosed", "close it on this line"),
         ("duplicate key", "rename or remove one of the two"),
         ("without quotes", "put the text in quotes"),
-        ("the unknown key", "correct its name or remove it"),
     ];
-    known
-        .into_iter()
-        .find(|(words, _)| what.contains(words))
-        .map(|(_, remedy)| remedy)
+    let own = known.into_iter().find(|(words, _)| what.contains(words));
+    own.map(|(_, remedy)| remedy.into())
 }
 
 /// The first number with a decimal comma that is the value of a line, such as `3,5` of `k = 3,5`.
