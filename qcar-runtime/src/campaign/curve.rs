@@ -6,7 +6,7 @@ use super::contents::{Campaign, Run, Test};
 use super::manifest::{CURVE, DYNAMIC_CURVE};
 use super::table::{self, Table};
 use crate::error::{InputError, Place, Problem};
-use crate::proportion::{Proportion, is_alike};
+use crate::proportion::{factor, is_alike};
 use crate::shown::{rounded, shown};
 
 /// A slow cycle: forces relative to the design position; compression is positive in a bounce.
@@ -151,7 +151,7 @@ impl DynamicCurve {
         let steps = self.time.windows(2).zip(self.velocity.windows(2));
         let travelled = steps.map(|(time, velocity)| 0.5 * (velocity[0] + velocity[1]) * (time[1] - time[0]));
         let moved = self.displacement.windows(2).map(|pair| pair[1] - pair[0]);
-        Proportion::of(travelled.zip(moved)).map(|found| found.factor)
+        factor(travelled.zip(moved))
     }
 }
 

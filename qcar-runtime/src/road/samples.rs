@@ -1,7 +1,7 @@
 //! Vertices of a road from samples: checks, steps, and one segment for many samples on a line.
 
 use super::RoadError;
-use crate::proportion::{Proportion, is_alike};
+use crate::proportion::is_alike;
 
 /// Distance from a line below which a point is on it, m: rounding of the arithmetic.
 pub(super) const EXACT: f64 = 1e-12;
@@ -9,9 +9,9 @@ pub(super) const EXACT: f64 = 1e-12;
 pub(super) const RESOLUTION: f64 = 1e-6;
 /// Largest difference between the slope of a sample and that of the chord to the next one.
 const SLOPE_TOLERANCE: f64 = 0.1;
-/// Smallest correlation of slopes with the rises of the heights for which a factor between them is that of a unit and
-/// not of noise: half of the variance.
-const CLEAR: f64 = std::f64::consts::FRAC_1_SQRT_2;
+/// Share of the slopes that must be the same multiple of the rises, within a factor of two, for that to be a unit and not
+/// noise: most of them. A step that is scaled to less than the tolerance of a slope does no harm.
+const MOST: f64 = 0.5;
 /// Largest change of a road, relative to its standard deviation, if a sample is left out.
 const ROUGHNESS_LIMIT: f64 = 0.25;
 
@@ -103,16 +103,20 @@ fn rise(pair: &[[f64; 2]]) -> [f64; 2] {
 fn check_units(points: &[[f64; 2]], slope: &[f64]) -> Result<(), RoadError> {
     let gradual = points.windows(2).zip(slope);
     let gradual = gradual.filter(|(pair, slope)| !leads_elsewhere(pair, **slope));
-    let rises = gradual.map(|(pair, slope)| {
-        let [dx, dz] = rise(pair);
-        (slope * dx, dz)
-    });
-    match Proportion::of(rises) {
-        Some(found) if found.correlation.abs() > CLEAR && !is_alike(found.factor) => {
-            Err(RoadError::SlopeInOtherUnit { factor: found.factor })
-        }
-        _ => Ok(()),
+    let stated = gradual.map(|(pair, slope)| (rise(pair), *slope));
+    let mut factors: Vec<f64> = stated
+        .filter(|([dx, _], slope)| slope * dx != 0.0)
+        .map(|([dx, dz], slope)| dz / (slope * dx))
+        .collect();
+    factors.sort_by(f64::total_cmp);
+    let Some(&typical) = factors.get(factors.len() / 2) else {
+        return Ok(());
+    };
+    let same = factors.iter().filter(|factor| is_alike(**factor / typical)).count();
+    if is_alike(typical) || (same as f64) < MOST * factors.len() as f64 {
+        return Ok(());
     }
+    Err(RoadError::SlopeInOtherUnit { factor: 1.0 / typical })
 }
 
 /// Largest number of points that count as corners, and smallest relative unevenness of their distances.
