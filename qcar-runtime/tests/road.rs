@@ -290,8 +290,7 @@ fn slopes_that_are_a_multiple_of_the_rises_are_refused() {
     for (factor, wrong) in [(1e-3, 1e3), (0.3048, 3.2808)] {
         let scaled: Vec<f64> = z.iter().map(|z| z * factor).collect();
         match Road::from_samples(&x, &scaled, &slope) {
-            Err(RoadError::SlopeInOtherUnit { factor }) => assert!((factor / wrong - 1.0).abs() < 0.01, "{factor}"),
-            // Heights in ft for m still step where the cleat does.
+            Err(RoadError::SlopeInOtherUnit { factor }) => assert!((factor / wrong - 1.0).abs() < 0.03, "{factor}"),
             other => panic!("{factor}: {other:?}"),
         }
     }
