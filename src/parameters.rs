@@ -18,6 +18,7 @@ use qcar_runtime::response::parameters::{ParameterError, Values};
 use qcar_runtime::roles::{RoleError, Roles};
 use qcar_runtime::shown::six_digits;
 use qcar_runtime::spelling;
+use qcar_runtime::statics::contradictions;
 
 use crate::failure;
 use crate::sensors;
@@ -232,11 +233,13 @@ pub fn stated_out_of_range(about: &About, stated: &BTreeMap<String, f64>) -> Vec
     beyond_ranges(about, known)
 }
 
-/// The same for the values of a campaign.
+/// The same for the values of a campaign, and for vehicle data that contradict each other.
 pub fn campaign_out_of_range(about: &About, campaign: &Campaign) -> Vec<String> {
     let start = campaign.parameters.iter().map(|own| (own.name.clone(), own.value));
     let stated = campaign.vehicle.iter().cloned().chain(start).collect();
-    stated_out_of_range(about, &stated)
+    let mut sentences = stated_out_of_range(about, &stated);
+    sentences.extend(contradictions(about, campaign));
+    sentences
 }
 
 fn beyond_ranges<'a>(about: &'a About, values: impl Iterator<Item = (&'a model::Parameter, f64)>) -> Vec<String> {

@@ -12,8 +12,6 @@ use crate::parameters::Setting;
 pub mod completions;
 // A first model file, campaign folder or workbook.
 pub mod new;
-// Mistakes of a model or campaign.
-pub mod check;
 // The stages of a model as text.
 pub mod show;
 // Differences between two models.
@@ -36,6 +34,8 @@ pub mod import;
 pub mod kc;
 // Parameters fitted to a campaign.
 pub mod fit;
+// Mistakes of a model, and of a campaign what a fit and others would refuse.
+pub mod check;
 // Further measurements that would determine the parameters better.
 pub mod plan;
 // Fitted parameters beside the true ones.

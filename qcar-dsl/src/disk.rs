@@ -1,6 +1,7 @@
 //! Model files from disk. The compiler itself takes texts; only this file reads files.
 
 use std::cell::RefCell;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use crate::compile::compile_wanted;
@@ -96,7 +97,10 @@ const MOST: u64 = 4 << 20;
 
 /// The text of a regular file; pipes and devices are refused, since they might never end.
 fn text(path: &Path) -> Result<String, String> {
-    let about = std::fs::metadata(path).map_err(|error| error.to_string())?;
+    let about = std::fs::metadata(path).map_err(|error| match error.kind() {
+        ErrorKind::NotFound | ErrorKind::NotADirectory => "no such file".to_string(),
+        _ => error.to_string(),
+    })?;
     match (about.is_file(), about.len()) {
         (false, _) if about.is_dir() => Err("a folder".into()),
         (false, _) => Err("a pipe or device".into()),

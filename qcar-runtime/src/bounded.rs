@@ -21,14 +21,24 @@ const MOST_PLAIN: u64 = 4 << 30;
 /// # Errors
 /// Fails with the error of the system, or if it is no regular file.
 pub fn open(path: &Path) -> io::Result<File> {
-    let kind = fs::metadata(path)?.file_type();
+    let kind = fs::metadata(path).map_err(in_words)?.file_type();
     if kind.is_file() {
-        File::open(path)
+        File::open(path).map_err(in_words)
     } else if kind.is_dir() {
         Err(io::Error::new(ErrorKind::IsADirectory, "a folder"))
     } else {
         Err(io::Error::new(ErrorKind::InvalidInput, "a pipe or device"))
     }
+}
+
+/// The common errors of the system in words for a message.
+fn in_words(error: io::Error) -> io::Error {
+    let words = match error.kind() {
+        ErrorKind::NotFound | ErrorKind::NotADirectory => "no such file",
+        ErrorKind::PermissionDenied => "a file without permission to read it",
+        _ => return error,
+    };
+    io::Error::new(error.kind(), words)
 }
 
 /// The content of a file other than a measured file, with an error of [`ErrorKind::FileTooLarge`] beyond the limit.

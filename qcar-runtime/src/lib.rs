@@ -9,6 +9,8 @@ pub use qcar_model as model;
 
 // Means and RMS values.
 pub mod mean;
+// The factor between two measurements of one quantity.
+mod proportion;
 // Matrices of a model at rest.
 pub mod matrices;
 // Sparse matrices as narrow bands.
@@ -23,6 +25,8 @@ pub mod shown;
 pub mod error;
 // Suggestions for misspelt names.
 pub mod spelling;
+// Errors of the readers of TOML and JSON.
+pub mod syntax;
 // Random numbers that are the same on every machine.
 pub mod random;
 // Reading of files up to a limit of size.
@@ -33,6 +37,8 @@ pub mod progress;
 pub mod campaign;
 // Which part of a model is the wheel, its road and its body.
 pub mod roles;
+// Vehicle data at rest that contradict each other.
+pub mod statics;
 // Fourier transforms of time histories.
 pub mod spectrum;
 // Sweeps to transmissibilities, with their uncertainty.

@@ -4,7 +4,7 @@
 //! integrals over the ground between two points, which are differences of two prefix integrals. So a query costs the
 //! same for a plank and for a measured road of a million samples.
 
-use crate::shown::{shown, six_digits};
+use crate::shown::{rounded, shown, six_digits};
 
 mod bounds;
 mod integrals;
@@ -57,6 +57,8 @@ pub enum RoadError {
     NoLength { x: f64 },
     #[error("slope {} at x = {}, where the heights rise by {} m per m", six_digits(*.slope), shown(*.x, "m"), six_digits(*.rise))]
     SlopeContradictsHeight { x: f64, slope: f64, rise: f64 },
+    #[error("slopes that are {} times as steep as the heights rise over x", rounded(*.factor, 3))]
+    SlopeInOtherUnit { factor: f64 },
     #[error(
         "a road rougher than its sampling: leaving out a sample changes it by {share:.2} of its own standard deviation"
     )]
@@ -89,7 +91,9 @@ impl RoadError {
             Self::NotFinite { .. } => "a finite number".into(),
             Self::NotMonotonic { .. } => "x that never decreases; two points at one x are a step".into(),
             Self::NoLength { .. } => "points at several x".into(),
-            Self::SlopeContradictsHeight { .. } => "a slope that leads to the next height".into(),
+            Self::SlopeContradictsHeight { .. } | Self::SlopeInOtherUnit { .. } => {
+                "a slope that leads to the next height".into()
+            }
             Self::Rough { limit, .. } => format!("a change of at most {limit}, so that a tyre can roll on chords"),
             Self::TooShort { needed, .. } => format!("one that reaches x = {}, as the run does", shown(*needed, "m")),
             Self::Shape { expected, .. } => (*expected).into(),
@@ -103,6 +107,9 @@ impl RoadError {
             Self::Rough { .. } => "sample the profile finer, or smooth it",
             Self::SlopeContradictsHeight { .. } => {
                 "leave out the column `slope`, or give the slope of the segment to the right of each point; a step stands alone"
+            }
+            Self::SlopeInOtherUnit { .. } => {
+                "correct the units of x, z and slope in the header line, such as `z [mm]`, or leave out the column `slope`"
             }
             Self::TooShort { .. } => "lengthen the road, or shorten the ride",
             _ => "correct the profile: finite numbers, from left to right",
@@ -128,7 +135,8 @@ impl Road {
     ///
     /// # Errors
     /// Fails if columns differ in length, if there are too few samples, if a number is not finite, if x decreases, if a
-    /// slope contradicts the heights at two successive samples, or if the road is too rough for its sampling: it
+    /// slope contradicts the heights at two successive samples, if the slopes are a multiple of the rises of the heights
+    /// (by a factor above 2 or below 1/2, as a wrong unit gives it), or if the road is too rough for its sampling: it
     /// changes by more than a quarter of its standard deviation (RMS) if each sample is replaced by the line through
     /// its neighbours, which for a sine is about nine samples per wavelength. A few points at uneven distances, whose
     /// slopes lead exactly from one to the next, are corners of a profile and not samples of a curve; a cleat may be

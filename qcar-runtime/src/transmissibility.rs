@@ -25,6 +25,8 @@ mod local;
 pub mod harmonics;
 // Averages over segments.
 mod averaged;
+// The law of a sweep.
+mod law;
 // The frequencies of the estimates.
 mod band;
 
@@ -310,6 +312,7 @@ pub fn responses(history: &History, points: &[Point], options: &Options) -> Resu
         Estimator::Welch(_) => &signals[..1],
     };
     let spectra = spectrum::transforms(whole);
+    law::check(history, &points[0], &signals[0])?;
     let frequencies = band::frequencies(history, &points[0], &spectra[0], options)?;
     check_alive(history, points)?;
     let (rate, spacing) = (history.sample_rate, history.sample_rate / history.len() as f64);

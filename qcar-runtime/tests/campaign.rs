@@ -420,6 +420,202 @@ fn every_mistake_is_named_with_its_place_and_remedy() {
     insta::assert_snapshot!(report);
 }
 
+/// A vertical sine of 20 mm at 0.6 Hz with rests before and after, by its factors on velocity and displacement.
+fn sine([velocity, displacement]: [f64; 2]) -> String {
+    let mut text = "time,displacement,velocity,force\n".to_string();
+    let omega = 0.075 / 0.02;
+    for row in 0..1500 {
+        let t = 0.01 * f64::from(row);
+        let moves = if (2.0..12.0).contains(&t) { 1.0 } else { 0.0 };
+        let (sin, cos) = (omega * (t - 2.0)).sin_cos();
+        let _ = writeln!(
+            text,
+            "{t},{},{},{}",
+            displacement * moves * 0.02 * sin,
+            velocity * moves * 0.075 * cos,
+            300.0 * sin
+        );
+    }
+    text
+}
+
+#[test]
+fn a_sine_agrees_with_itself_and_with_its_set_values() {
+    let read = |text: String, old: &str, new: &str| {
+        let folder = campaign(&[("dynamic.csv", DYNAMIC, &text), ("campaign.toml", old, new)]);
+        let campaign = Campaign::open(folder.path()).unwrap();
+        let said = campaign.dynamic_curve(&campaign.runs[2]).map(drop);
+        said.map_err(|error| error.to_string())
+    };
+    let none = ("name = \"bench\"", "name = \"bench\"");
+    read(sine([1.0, 1.0]), none.0, none.1).unwrap();
+    let refused = |text: String, (old, new): (&str, &str), fragments: &[&str]| {
+        let said = read(text, old, new).unwrap_err();
+        for fragment in fragments {
+            assert!(said.contains(fragment), "expected `{fragment}` in {said}");
+        }
+        said
+    };
+    let slow = refused(
+        sine([1.0, 1.0]).replace("velocity", "velocity [mm/s]"),
+        none,
+        &[
+            "dynamic.csv, `velocity`",
+            "velocities of 0.00",
+            "such as `velocity [mm/s]`",
+        ],
+    );
+    assert!(slow.contains("times `peak_velocity`"), "{slow}");
+    refused(sine([-1.0, 1.0]), none, &["velocities of -", "or a sign"]);
+    let peak = ("peak_velocity = 0.075", "peak_velocity = 7.5");
+    let said = refused(
+        sine([1.0, 1.0]),
+        peak,
+        &["a peak velocity of 0.07", "expected one near `peak_velocity = 7.5`"],
+    );
+    assert_eq!(said.lines().count(), 1, "{said}");
+    let amplitude = ("amplitude = 0.02", "amplitude = 20");
+    refused(
+        sine([1.0, 1.0]),
+        amplitude,
+        &[
+            "dynamic.csv, `displacement`: found an amplitude of 0.0",
+            "times `amplitude`",
+        ],
+    );
+}
+
+/// A campaign of one dynamometer run, with its table and the key for its amplitude.
+fn forces(table: &str, amplitude: &str) -> Result<(), String> {
+    let folder = tempfile::tempdir().unwrap();
+    let text = format!(
+        "format = 1\nname = \"bench\"\nmodel = \"damper_dyno\"\n[[run]]\nkind = \"dynamometer\"\nfile = \"t.csv\"\n\
+         role = \"fit\"\nlink = \"damper\"\namplitude = \"{amplitude}\"\nuncertainty = \"8 N\"\n"
+    );
+    fs::write(folder.path().join("campaign.toml"), text).unwrap();
+    fs::write(folder.path().join("t.csv"), table).unwrap();
+    let campaign = Campaign::open(folder.path()).unwrap();
+    let read = campaign.force_table(&campaign.runs[0]).map(drop);
+    read.map_err(|error| error.to_string())
+}
+
+#[test]
+fn a_dynamometer_has_speeds_that_its_sines_reach() {
+    let rows = "-1,-350\n-0.1,-110\n0.1,110\n1,350\n";
+    forces(&format!("velocity,force\n{rows}"), "50 mm").unwrap();
+    // Friction at creeping speeds alone.
+    forces("velocity,force\n-0.002,-80\n0.002,80\n", "25 mm").unwrap();
+    for (header, amplitude) in [
+        ("velocity [mm/s],force", "50 mm"),
+        ("velocity,force", "50 m"),
+        ("velocity,force", "50 um"),
+    ] {
+        let said = forces(&format!("{header}\n{rows}"), amplitude).unwrap_err();
+        assert!(
+            said.contains("t.csv, `velocity`: found a largest speed of") && said.contains("from 0.01 to 100 Hz"),
+            "{said}"
+        );
+    }
+    let said = forces("velocity,force\n0.1,110\n", "50 mm").unwrap_err();
+    assert!(
+        said.contains("t.csv: found a single row, expected at least two"),
+        "{said}"
+    );
+}
+
+/// Each says in one sentence what to write.
+#[test]
+fn tables_of_other_programs_are_told_how_to_be_read() {
+    let said = |edit: (&str, &str, &str)| {
+        let folder = campaign(&[edit]);
+        let said = read_all(folder.path()).unwrap_err().to_string();
+        assert_eq!(said.lines().count(), 1, "{said}");
+        said
+    };
+    for (separator, name) in [(";", "semicolons"), ("\t", "tabulators")] {
+        let text = SWEEP.replace(',', separator);
+        let said = said(("sweep.csv", SWEEP, &text));
+        assert!(
+            said.contains(&format!(
+                "sweep.csv, line 1: found columns that are separated by {name}, expected commas"
+            )),
+            "{said}"
+        );
+        assert!(said.contains("rename it to end in .txt"), "{said}");
+    }
+    for cell in ["overload", "0x10", "1 000.0", "\"1,5\""] {
+        let said = said(("sweep.csv", "0.02,5,6", &format!("0.02,{cell},6")));
+        assert!(said.contains("write a number such as 1000.0"), "{said}");
+    }
+    assert!(said(("sweep.csv", "0.02,5,6", "0.02,,6")).contains("a missing sample"));
+    assert!(said(("sweep.csv", "time", "tme")).contains("column `tme`: found an unknown column"));
+    assert!(said(("sweep.csv", "time", "tme")).contains("did you mean `time`?"));
+    assert!(said(("sweep.csv", "body_centre_z", "body_center_z")).contains("did you mean `body_centre_z`?"));
+    assert!(said(("campaign.toml", "\"held_out\"", "\"heldout\"")).contains("did you mean \"held_out\"?"));
+    assert!(said(("campaign.toml", "cleat = \"step\"", "cleat = \"stepp\"")).contains("did you mean \"step\"?"));
+}
+
+/// The renamed file, as the message for it advises, is read to the same numbers.
+#[test]
+fn a_renamed_table_with_semicolons_is_read() {
+    let folder = campaign(&[("campaign.toml", "sweep.csv", "sweep.txt")]);
+    let text = SWEEP.replace(',', ";").replace('.', ",");
+    fs::write(folder.path().join("sweep.txt"), text).unwrap();
+    let campaign = Campaign::open(folder.path()).unwrap();
+    let sweep = campaign.history(&campaign.runs[0]).unwrap();
+    assert_eq!(sweep.signal("body_centre_z"), Some(&[2.0, 4.0, 6.0, 8.0, 10.0][..]));
+}
+
+#[test]
+fn broken_toml_is_told_with_its_line_and_a_remedy() {
+    let said = |old: &str, new: &str| {
+        let folder = campaign(&[("campaign.toml", old, new)]);
+        Campaign::open(folder.path()).unwrap_err().to_string()
+    };
+    let cases = [
+        (
+            "m_corner = 400",
+            "m_corner = 400,5",
+            ["found `400,5`", "a number such as 400.5", "write a decimal point"],
+        ),
+        (
+            "[vehicle]",
+            "[vehicle",
+            ["line 6", "in `[vehicle`", "close it on this line"],
+        ),
+        (
+            "gravity = 9.81",
+            "m_corner = 401",
+            ["line 8", "in `m_corner = 401`", "rename or remove one of the two"],
+        ),
+        (
+            "name = \"bench\"",
+            "name = bench",
+            ["line 2", "in `name = bench`", "put the text in quotes"],
+        ),
+    ];
+    for (old, new, fragments) in cases {
+        let said = said(old, new);
+        for fragment in fragments {
+            assert!(said.contains(fragment), "expected `{fragment}` in {said}");
+        }
+    }
+}
+
+#[test]
+fn the_file_of_a_campaign_stands_for_its_folder() {
+    let folder = campaign(&[]);
+    let file = folder.path().join("campaign.toml");
+    let opened = Campaign::open(&file).unwrap();
+    assert_eq!(opened.folder, folder.path());
+    fs::remove_file(&file).unwrap();
+    let error = Campaign::open(folder.path()).unwrap_err().to_string();
+    assert!(
+        error.contains("campaign.toml: found no such file, expected a readable text file"),
+        "{error}"
+    );
+}
+
 #[test]
 fn a_folder_without_a_campaign_is_named() {
     let error = Campaign::open("no/such/campaign").unwrap_err().to_string();

@@ -277,6 +277,49 @@ fn roads_that_make_no_sense_are_refused() {
     }
 }
 
+/// Heights in another unit than the slopes: too small for a single slope to contradict them.
+#[test]
+fn slopes_that_are_a_multiple_of_the_rises_are_refused() {
+    let (x, z, slope) = sampled_cleat();
+    for (factor, wrong) in [(1e-3, 1e3), (0.3048, 3.2808)] {
+        let scaled: Vec<f64> = z.iter().map(|z| z * factor).collect();
+        match Road::from_samples(&x, &scaled, &slope) {
+            Err(RoadError::SlopeInOtherUnit { factor }) => assert!((factor / wrong - 1.0).abs() < 0.03, "{factor}"),
+            other => panic!("{factor}: {other:?}"),
+        }
+    }
+    let per_cent: Vec<f64> = slope.iter().map(|slope| slope * 0.01).collect();
+    let found = Road::from_samples(&x, &z, &per_cent);
+    assert!(matches!(found, Err(RoadError::SlopeInOtherUnit { .. })), "{found:?}");
+    assert!(
+        Road::from_samples(&x, &z, &vec![0.0; x.len()]).is_ok(),
+        "slopes that say nothing"
+    );
+}
+
+/// A slope that a profilometer smooths over a metre, or in which noise is as large as the slope, is one of this road.
+#[test]
+fn slopes_of_a_measured_road_may_be_smooth_or_noisy() {
+    let x: Vec<f64> = (0..4000).map(|i| 0.01 * f64::from(i)).collect();
+    let height = |x: f64| 0.01 * (0.7 * x).sin() + 0.002 * (9.0 * x).sin();
+    let z: Vec<f64> = x.iter().map(|&x| height(x)).collect();
+    let smooth: Vec<f64> = x
+        .iter()
+        .map(|&x| (height(x + 0.505) - height(x - 0.495)) / 1.0)
+        .collect();
+    Road::from_samples(&x, &z, &smooth).unwrap();
+    let mut state = 5u32;
+    let mut noise = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        0.06 * (f64::from(state) / f64::from(u32::MAX) - 0.5)
+    };
+    let noisy: Vec<f64> = x
+        .iter()
+        .map(|&x| (height(x + 0.01) - height(x)) / 0.01 + noise())
+        .collect();
+    Road::from_samples(&x, &z, &noisy).unwrap();
+}
+
 /// A plank with ramps of 10 mm, by its corners: no sampling has made these, so none can be too coarse.
 #[test]
 fn a_cleat_may_be_given_by_its_corners() {

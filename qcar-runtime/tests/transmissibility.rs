@@ -431,6 +431,44 @@ impl Tones {
     }
 }
 
+/// Of both laws, declared as either; noise of a hundredth of the signal does no harm.
+#[test]
+fn a_sweep_of_the_other_law_is_refused() {
+    let linear = |k: usize| {
+        let (t, last) = (k as f64 / RATE, SECONDS);
+        let frequency = 0.5 + 29.5 * t / last;
+        TAU * frequency * 0.1 * (TAU * (0.5 * t + 0.5 * 29.5 * t * t / last)).cos()
+    };
+    let linear: Vec<f64> = (0..(SECONDS * RATE) as usize).map(linear).collect();
+    let mut noise = Noise(7);
+    let records = [
+        (Spacing::Logarithmic, noise.added(&sweep_record(0.1), 0.05)),
+        (Spacing::Linear, noise.added(&linear, 0.1)),
+    ];
+    for (true_law, pad) in &records {
+        for declared in [Spacing::Logarithmic, Spacing::Linear] {
+            let mut history = record(pad.clone(), pad.clone());
+            let Test::Sweep(sweep) = &mut history.test else {
+                panic!("it is a sweep")
+            };
+            sweep.spacing = declared;
+            let pair = (point("pad"), point("body"));
+            let found = transmissibilities(&history, &point("pad"), &[pair], &Options::default());
+            let words = |law: Spacing| format!("spacing = \"{}\"", format!("{law:?}").to_lowercase());
+            match (declared == *true_law, found) {
+                (true, found) => drop(found.unwrap()),
+                (false, found) => {
+                    let said = found.unwrap_err().to_string();
+                    assert!(
+                        said.contains(&format!("expected `{}`; write `{}`", words(declared), words(*true_law))),
+                        "{said}"
+                    );
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn what_a_record_cannot_tell_is_refused() {
     let pad = sweep_record(0.1);

@@ -9,6 +9,7 @@ use qcar_runtime::campaign::workbook::{Entry, Workbook, is_workbook};
 use qcar_runtime::campaign::{Declared, examples, impossible_fact, unit_of_fact};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::spelling;
+use qcar_runtime::syntax;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -171,8 +172,8 @@ impl Reader<'_> {
         let table = match DeTable::parse(self.text) {
             Ok(table) => table.into_inner(),
             Err(error) => {
-                let start = error.span().map_or(0, |span| span.start);
-                self.wrong(start, "", error.message(), "TOML", "see https://toml.io for its syntax");
+                let problem = syntax::of_toml(self.path, self.text, &error, "correct this line");
+                self.problems.push(problem);
                 return Tables::default();
             }
         };

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use qcar_runtime::ensemble::{Estimate, Posterior};
 use qcar_runtime::error::{InputError, Place, Problem};
+use qcar_runtime::syntax;
 use serde::Deserialize;
 use serde_json::Value;
 
@@ -43,15 +44,15 @@ impl Answer {
     pub fn read(path: &Path) -> Result<Self, InputError> {
         let text = read_text(path)?;
         let json: Value = serde_json::from_str(&text).map_err(|error| {
-            let place = Place::Key(error.line(), error.column(), String::new());
             let remedy = "create the file again with `qcar fit --out`";
-            Problem::new(path, place, error.to_string(), "JSON", remedy)
+            syntax::of_json(path, &text, &error, remedy)
         })?;
         let fit = json.get("fit").unwrap_or(&json);
         Answer::deserialize(fit).map_err(|error| {
             let remedy = "give the fit.json of `qcar fit --out`, or a TOML file with [parameters]";
             let expected = "the answer of a fit, with its model and parameters";
-            Problem::new(path, Place::File, error.to_string(), expected, remedy).into()
+            let (found, _) = syntax::words(&error.to_string());
+            Problem::new(path, Place::File, found, expected, remedy).into()
         })
     }
 

@@ -16,8 +16,9 @@ mod campaign;
 
 /// Check models for mistakes and suggest remedies, or campaigns for flaws of their samples
 ///
-/// Without a name, all shipped models are checked. The exit status is 1 if a model is refused, or if a sweep to be
-/// fitted has a dead channel. Other flaws of a measurement (clipping, spikes, drift, dead channels) are warnings.
+/// Without a name, all shipped models are checked. The exit status is 1 if a model is refused, or if a fit or another
+/// verb would refuse a run of the campaign. Other flaws of a measurement (clipping, spikes, drift, dead channels) are
+/// warnings.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar check models/axles/quarter_car.axle\n  qcar check models/campaigns/axle_a_rig\n  qcar check --members models/families/corner.axle"
@@ -52,8 +53,9 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
 
 /// True if a model or a campaign has no fault, and the text to print.
 fn verdict(name: &str) -> Result<(bool, String), Failure> {
-    if Path::new(name).is_dir() {
-        return campaign::verdict(Path::new(name));
+    let path = Path::new(name);
+    if path.is_dir() || path.ends_with("campaign.toml") {
+        return campaign::verdict(path);
     }
     Ok(match catalogue::compile(name, Wanted::Values)? {
         Err(report) => (false, format!("{name}: refused\n{report}\n")),

@@ -21,6 +21,7 @@ use qcar_runtime::model::{About, Model};
 use qcar_runtime::progress::OnProgress;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::spelling;
+use qcar_runtime::statics::contradictions;
 use qcar_runtime::transmissibility::Options;
 
 use crate::catalogue::{self, Loaded};
@@ -288,6 +289,8 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
         campaign.notices.extend(notices::unused_runs(&campaign, &levels));
     }
     campaign.notices.extend(out_of_range(model.about(), setup.values()));
+    let contradictions = contradictions(model.about(), &campaign);
+    campaign.notices.extend(contradictions);
     let profiled = match of_all_runs {
         Some(_) => Vec::new(),
         None => profiled(&plan, model.about(), setup.free(), &choices.profile)?,
@@ -314,6 +317,28 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
     }
     fitted.campaign.notices.extend(notices::all_at_bounds(&fitted.fit));
     Ok(fitted)
+}
+
+/// Checks that the runs of a campaign can be fitted to its model, as a fit does before it searches. A campaign without
+/// a run to fit is not refused: it serves other verbs.
+///
+/// # Errors
+/// Fails as the fit does.
+pub(crate) fn check(campaign: &Campaign, model: &Loaded) -> Result<(), Failure> {
+    let (about, choices) = (model.about(), Choices::default());
+    if !is_by_transmissibilities(campaign, about, &choices) {
+        return nonlinear::check(campaign, about, &choices);
+    }
+    let is_measured = |run: &Run| matches!(run.test, Test::Sweep(_) | Test::TimeHistory(_));
+    let mut fitted = campaign.runs.iter().filter(|run| run.role == Role::Fit);
+    if !fitted.any(is_measured) {
+        return Ok(());
+    }
+    let plan = plan(campaign, about, &choices)?;
+    refuse_unseen(model, &plan, campaign.runs.iter().any(is_beyond_sweeps))?;
+    let levels = measure(campaign, about, &choices)?;
+    let setup = Setup::new(&**model, &plan, &levels)?;
+    Ok(model.check_inertias(setup.values())?)
 }
 
 /// The measured ratios of all runs.

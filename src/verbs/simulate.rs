@@ -9,6 +9,7 @@ use qcar_runtime::campaign::{Campaign, Test};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::simulate::{Car, Cleat, Drive, Ride, Settings, SimulateError, Variant, rides, tyre};
+use qcar_runtime::statics::contradictions;
 use qcar_runtime::tyre::Tyre;
 
 use crate::catalogue::{self, Loaded};
@@ -210,7 +211,8 @@ fn open(campaign: &Path, choices: &Choices) -> Result<Opened, Failure> {
     let files = std::iter::once(manifest.as_path()).chain(choices.params.as_deref());
     let values = parameters::resolve(model.about(), files, &choices.set)?;
     let outside = parameters::out_of_range(model.about(), values.as_slice());
-    campaign.notices.extend(outside);
+    let contradictions = contradictions(model.about(), &campaign);
+    campaign.notices.extend(outside.into_iter().chain(contradictions));
     Ok(Opened {
         campaign,
         model,

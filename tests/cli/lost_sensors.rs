@@ -126,9 +126,16 @@ fn a_check_of_a_campaign_refuses_what_its_other_verbs_refuse() {
     check(
         "r_tire = ",
         "r_tire = -",
-        &["campaign.toml, `vehicle`", "correct r_tire"],
+        &[
+            "campaign.toml",
+            "`vehicle.r_tire`: found -0.35",
+            "correct the value or its unit",
+        ],
     );
-    let checked = succeeds(&["check", misplaced().path().to_str().unwrap()]);
+    let checked = qcar(&["check", misplaced().path().to_str().unwrap()]);
+    assert_eq!(checked.status, 1, "{}", checked.stderr);
+    let checked = checked.stdout;
+    assert!(checked.contains(": cannot be fitted"), "{checked}");
     assert!(checked.contains("gives no acceleration of `whel` along z"), "{checked}");
     assert!(checked.contains("did you mean `wheel`?"), "{checked}");
 }

@@ -7,6 +7,7 @@ mod bad_input;
 mod command_line;
 mod common;
 mod compare;
+mod contradictions;
 mod document;
 mod dynamometer;
 mod effects;

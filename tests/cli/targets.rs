@@ -313,7 +313,7 @@ fn what_cannot_be_wanted_is_refused_with_place_and_remedy() {
     refused(
         "at_most = \"92 %\"",
         "at_most = \"92 %\"\nrun = 3",
-        &["line 8", "unknown field `run`"],
+        &["line 8", "the unknown key `run`"],
     );
     refused(
         "at_most = \"92 %\"",

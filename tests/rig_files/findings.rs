@@ -191,7 +191,7 @@ fn plain_tables_are_checked_too() {
         assert_eq!(open(folder.path()).unwrap().notices, [] as [&str; 0]);
         let (status, said) = qcar(folder.path(), "check .");
         assert_eq!(status, 1, "{said}");
-        assert!(said.starts_with(".: not fit for a fit\n"), "{said}");
+        assert!(said.starts_with(".: cannot be fitted\n"), "{said}");
         assert!(
             said.contains(&format!("rig.csv, `body_left_z`, 0.000 s to 4.990 s: {flaw}")),
             "{said}"

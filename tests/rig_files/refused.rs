@@ -281,7 +281,7 @@ fn a_sensor_stands_in_one_file() {
     write(head.clone() + &history("rig.txt", ""));
     let error = open(folder.path()).unwrap_err().to_string();
     assert!(
-        error.contains("`mapping`: found") && error.contains("rig.toml: No such file"),
+        error.contains("`mapping`: found") && error.contains("rig.toml: no such file"),
         "{error}"
     );
     std::fs::write(path("rig.toml"), pad() + "[[channels]]\n").unwrap();

@@ -29,6 +29,8 @@ pub fn unit_of_fact(name: &str) -> Option<&'static str> {
 ///
 /// A tyre pushes and does not pull; models take a load of 0 for one that stays linear. The limits of gravity lie beyond
 /// those of the Moon (1.62 m/s^2) and of Jupiter (24.8 m/s^2), and leave out 1 for 1 g, and values in ft/s^2 or mm/s^2.
+/// Those of a tyre's radius are a choice: below the wheels of model cars (0.03 m), and above the tyres of the largest
+/// dump trucks (2.0 m), which leaves out values of cars in mm, cm or in.
 pub fn impossible_fact(name: &str, value: f64) -> Option<(&'static str, &'static str)> {
     let (is_possible, expected, remedy) = match name {
         "gravity" => (
@@ -40,6 +42,11 @@ pub fn impossible_fact(name: &str, value: f64) -> Option<(&'static str, &'static
             value >= 0.0,
             "the load that the tyre carries, not negative",
             "correct the value: a compressive load is positive",
+        ),
+        "r_tire" => (
+            (0.01..=2.5).contains(&value),
+            "the radius of an unloaded tyre, from 0.01 to 2.5 m",
+            "correct the value or its unit, such as \"350 mm\"",
         ),
         _ => return None,
     };

@@ -6,6 +6,8 @@ use super::contents::{Campaign, Run, Test};
 use super::manifest::{CURVE, DYNAMIC_CURVE};
 use super::table::{self, Table};
 use crate::error::{InputError, Place, Problem};
+use crate::proportion::{factor, is_alike};
+use crate::shown::{rounded, shown};
 
 /// A slow cycle: forces relative to the design position; compression is positive in a bounce.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,13 +63,23 @@ impl Campaign {
     /// Reads the curve of a dynamic bounce run.
     ///
     /// # Errors
-    /// Fails if `run` is no dynamic bounce, if its file has values that are not finite numbers, or if time does not
-    /// increase.
+    /// Fails if `run` is no dynamic bounce, if its file has values that are not finite numbers, if time does not
+    /// increase, or if velocity, displacement and the peak velocity and amplitude of the run contradict each other by a
+    /// factor above 2 or below 1/2.
     pub fn dynamic_curve(&self, run: &Run) -> Result<DynamicCurve, InputError> {
         let file = self.folder.join(&run.file);
-        if !matches!(run.test, Test::DynamicBounce { .. }) {
+        let Test::DynamicBounce {
+            peak_velocity,
+            amplitude,
+        } = run.test
+        else {
             return Err(other_kind(&file, "a dynamic bounce"));
-        }
+        };
+        let curve = self.sine(run, file)?;
+        InputError::unless_empty(curve.contradictions(peak_velocity, amplitude), Some(curve))
+    }
+
+    fn sine(&self, run: &Run, file: PathBuf) -> Result<DynamicCurve, InputError> {
         if let Some(recorded) = self.recorded(run) {
             return Ok(DynamicCurve {
                 time: recorded.times(),
@@ -88,6 +100,70 @@ impl Campaign {
             force,
         })
     }
+}
+
+impl DynamicCurve {
+    /// Problems of the columns with each other, and with the set values of the rig (m/s and m).
+    fn contradictions(&self, peak_velocity: f64, amplitude: f64) -> Vec<Problem> {
+        let problem = |column: &str, found: String, expected: String, remedy: &str| {
+            Problem::new(&self.file, Place::Name(column.into()), found, expected, remedy)
+        };
+        let of_key = |(column, what): (&str, &str), (recorded, set): (f64, f64), (key, si): (&str, &str)| {
+            let factor = recorded / set;
+            let wrong = || {
+                let found = format!(
+                    "{what} of {}, {} times `{key}`",
+                    shown(recorded, si),
+                    rounded(factor, 3)
+                );
+                let expected = format!("one near `{key} = {set}` of the run");
+                let remedy = format!("correct `{key}` in campaign.toml, or the unit of the column");
+                problem(column, found, expected, &remedy)
+            };
+            (!is_alike(factor)).then(wrong)
+        };
+        let rate = self.velocity_over_rate().filter(|factor| !is_alike(*factor));
+        let of_rate = rate.map(|factor| {
+            problem(
+                "velocity",
+                format!("velocities of {} times the rate of the displacement", rounded(factor, 3)),
+                "the rate of the displacement over time".into(),
+                "correct the unit of `time`, `displacement` or `velocity` in the file, such as `velocity [mm/s]`, or a sign",
+            )
+        });
+        let peak = quantile(self.velocity.iter().map(|velocity| velocity.abs()), MOST);
+        let [low, high] = [1.0 - MOST, MOST].map(|share| quantile(self.displacement.iter().copied(), share));
+        let of_peak = of_key(
+            ("velocity", "a peak velocity"),
+            (peak, peak_velocity),
+            ("peak_velocity", "m/s"),
+        );
+        let of_amplitude = of_key(
+            ("displacement", "an amplitude"),
+            (0.5 * (high - low), amplitude),
+            ("amplitude", "m"),
+        );
+        of_rate.into_iter().chain(of_peak).chain(of_amplitude).collect()
+    }
+
+    /// The velocity over the rate of the displacement, by increments from row to row; `None` if one of them is zero.
+    fn velocity_over_rate(&self) -> Option<f64> {
+        let steps = self.time.windows(2).zip(self.velocity.windows(2));
+        let travelled = steps.map(|(time, velocity)| 0.5 * (velocity[0] + velocity[1]) * (time[1] - time[0]));
+        let moved = self.displacement.windows(2).map(|pair| pair[1] - pair[0]);
+        factor(travelled.zip(moved))
+    }
+}
+
+/// Share of the samples below the amplitude of a sine. A whole sine is at most 1.2 % below its peak there; single spikes
+/// are above.
+const MOST: f64 = 0.95;
+
+/// The value below which this share of the values lies; there must be a value.
+fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
+    let mut sorted: Vec<f64> = values.collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted[(share * (sorted.len() - 1) as f64).round() as usize]
 }
 
 pub(super) fn other_kind(file: &Path, expected: &str) -> InputError {

@@ -1,12 +1,13 @@
 //! Dynamometer tables: the force of a link over its speed.
 
+use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
 use super::contents::{Campaign, Dynamometer, Run, Test};
 use super::curve::{other_kind, read};
 use super::manifest::{FORCES, UNCERTAINTY};
 use crate::error::{InputError, Place, Problem};
-use crate::shown::shown;
+use crate::shown::{rounded, shown};
 
 /// Forces of a link at its speeds, all positive in extension, one value for each row.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,13 +26,20 @@ pub struct ForceTable {
 /// this share of the largest force: a damper never supplies energy.
 const PUSHES: f64 = 3.0;
 const NOTABLE: f64 = 0.05;
+/// Fewest rows: one sine gives a force in rebound and one in compression.
+const FEWEST: usize = 2;
+/// Possible frequencies of the fastest sine, Hz. A choice: dynamometers take about a second for it, so that a unit wrong
+/// by 1000 leaves this range, while a table of creeping speeds alone (2 mm/s over a stroke of 50 mm) stays inside.
+const POSSIBLE: std::ops::RangeInclusive<f64> = 0.01..=100.0;
 
 impl Campaign {
     /// Reads the table of a dynamometer.
     ///
     /// # Errors
-    /// Fails if `run` is no such table, if its file has values that are not finite numbers, if a speed is zero, if a
-    /// force acts in the direction of the motion, or if the uncertainty is missing, given twice, or not positive.
+    /// Fails if `run` is no such table, if its file has values that are not finite numbers, if it has a single row, if a
+    /// speed is zero, if a sine of the amplitude of the run would need less than 0.01 s or more than 100 s for the
+    /// largest speed, if a force acts in the direction of the motion, or if the uncertainty is missing, given twice, or
+    /// not positive.
     pub fn force_table(&self, run: &Run) -> Result<ForceTable, InputError> {
         let file = self.folder.join(&run.file);
         let Test::Dynamometer(test) = &run.test else {
@@ -52,7 +60,9 @@ impl Campaign {
             velocity,
             force,
         };
-        let problems = read.problems(lines.as_deref());
+        let mut problems = read.problems(lines.as_deref());
+        problems.extend(read.too_few());
+        problems.extend(read.no_sine(test.amplitude));
         InputError::unless_empty(problems, Some(read))
     }
 }
@@ -76,6 +86,33 @@ fn stated(test: &Dynamometer, each: Option<Vec<f64>>, rows: usize, file: &Path) 
 }
 
 impl ForceTable {
+    fn too_few(&self) -> Option<Problem> {
+        let (found, expected) = (
+            "a single row",
+            "at least two: a force in rebound and one in compression",
+        );
+        let problem = || Problem::new(&self.file, Place::File, found, expected, "export the whole table");
+        (self.velocity.len() < FEWEST).then(problem)
+    }
+
+    /// Problem of speeds that no sine of this amplitude (m) has on a dynamometer.
+    fn no_sine(&self, amplitude: f64) -> Option<Problem> {
+        let fastest = self.velocity.iter().fold(0.0, |most: f64, speed| most.max(speed.abs()));
+        let frequency = fastest / (TAU * amplitude);
+        let problem = || {
+            let found = format!(
+                "a largest speed of {}, for which a sine of the amplitude {} has {}",
+                shown(fastest, "m/s"),
+                shown(amplitude, "m"),
+                shown(rounded(frequency, 3), "Hz")
+            );
+            let expected = format!("from {} to {} Hz", POSSIBLE.start(), POSSIBLE.end());
+            let remedy = "correct the unit of the column, such as `velocity [mm/s]`, or `amplitude` in campaign.toml";
+            Problem::new(&self.file, Place::Name("velocity".into()), found, expected, remedy)
+        };
+        (fastest > 0.0 && !POSSIBLE.contains(&frequency)).then(problem)
+    }
+
     /// Checks the rows; `lines` are their lines in a plain table.
     fn problems(&self, lines: Option<&[u64]>) -> Vec<Problem> {
         let place = |row: usize, name: &str| match lines {

@@ -12,6 +12,7 @@ use super::unit::{Declared, examples};
 use crate::bounded;
 use crate::error::{InputError, Place, Problem};
 use crate::spelling;
+use crate::syntax;
 
 /// A TOML file with the problems found so far.
 pub(super) struct Document {
@@ -48,18 +49,8 @@ impl Document {
 
     /// The syntax tree.
     pub fn parse(&self) -> Result<Spanned<DeTable<'_>>, InputError> {
-        DeTable::parse(&self.text).map_err(|error| {
-            let place = self.place(error.span().unwrap_or_default(), String::new());
-            let remedy = "correct the syntax at this place";
-            Problem::new(
-                &self.file,
-                place,
-                format!("broken syntax ({})", error.message().trim()),
-                "TOML",
-                remedy,
-            )
-            .into()
-        })
+        DeTable::parse(&self.text)
+            .map_err(|error| syntax::of_toml(&self.file, &self.text, &error, "correct this line").into())
     }
 
     /// The top of the document.
@@ -234,7 +225,11 @@ impl<'a> Section<'a> {
         let text = self.text(key)?;
         let choice = names.iter().find(|(name, _)| *name == text).map(|&(_, choice)| choice);
         if choice.is_none() {
-            self.wrong(key, format!("\"{text}\""), words, "write one of these words");
+            let remedy = match spelling::nearest(&text, names.iter().map(|(name, _)| *name)) {
+                Some(nearest) => format!("did you mean \"{nearest}\"?"),
+                None => "write one of these words".into(),
+            };
+            self.wrong(key, format!("\"{text}\""), words, remedy);
         }
         choice
     }

@@ -33,14 +33,14 @@ pub(super) const ROAD: &[&str] = &["x", "z"];
 pub(super) const SLOPE: &[&str] = &["slope"];
 
 impl Campaign {
-    /// Opens a campaign: reads `campaign.toml` of `folder`, the header line of every plain table that it lists, and the
+    /// Opens a campaign: reads `campaign.toml` of `folder` (or that file, if it is given itself), the header line of every plain table that it lists, and the
     /// runs of all other files.
     ///
     /// # Errors
     /// Fails with all problems of `campaign.toml`; without any, with all problems of the headers of files; without
     /// these, with all problems of the other files.
     pub fn open(folder: impl AsRef<Path>) -> Result<Campaign, InputError> {
-        let folder = folder.as_ref();
+        let folder = folder_of(folder.as_ref());
         let document = Document::read(&folder.join("campaign.toml"))?;
         let files = Files::default();
         let campaign = {
@@ -64,6 +64,17 @@ impl Campaign {
             campaign.notices.extend(findings.iter().map(ToString::to_string));
         }
         Ok(campaign)
+    }
+}
+
+/// The folder of a `campaign.toml` that is given in place of its folder.
+fn folder_of(given: &Path) -> &Path {
+    let is_manifest = given.ends_with("campaign.toml") && given.is_file();
+    let folder = given.parent().filter(|_| is_manifest).unwrap_or(given);
+    if folder.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        folder
     }
 }
 

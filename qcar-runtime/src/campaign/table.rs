@@ -9,6 +9,7 @@ use csv::{ByteRecord, ReaderBuilder, Terminator};
 use super::unit::{Declared, examples, says_its_angle};
 use crate::bounded;
 use crate::error::{InputError, Place, Problem};
+use crate::spelling;
 
 /// A complete file.
 pub(super) struct Table {
@@ -134,7 +135,17 @@ const MOST_PROBLEMS: usize = 20;
 /// Problems of the columns of a file, whose names must be `required` and may be `allowed`.
 pub(super) fn check_names(file: &Path, names: &[String], required: &[&str], allowed: &[&str]) -> Vec<Problem> {
     let mut problems = Vec::new();
-    for name in required.iter().filter(|name| !names.iter().any(|n| n == *name)) {
+    let known: Vec<&str> = required.iter().chain(allowed).copied().collect();
+    let is_known = |name: &String| known.contains(&name.as_str());
+    // A misspelt name is reported once, at its own place.
+    let misspelt = |name: &String| nearest(name, &known).filter(|own| !names.iter().any(|other| other == own));
+    let meant: Vec<&str> = names
+        .iter()
+        .filter(|name| !is_known(name))
+        .filter_map(misspelt)
+        .collect();
+    let missing = required.iter().filter(|name| !names.iter().any(|n| n == *name));
+    for name in missing.filter(|name| !meant.contains(name)) {
         let found = format!("the columns {}", list(names));
         let remedy = format!("add the column `{name}`, or correct the header line (columns are separated by commas)");
         problems.push(Problem::new(
@@ -162,10 +173,13 @@ pub(super) fn check_names(file: &Path, names: &[String], required: &[&str], allo
                 "each name once",
                 "rename or remove one",
             ));
-        } else if !required.contains(&name.as_str()) && !allowed.contains(&name.as_str()) {
-            let known: Vec<_> = required.iter().chain(allowed).collect();
-            let remedy =
+        } else if !is_known(name) {
+            let otherwise =
                 "rename or remove the column; if it is a sensor of a time history, declare it as a [[channel]]";
+            let remedy = match misspelt(name) {
+                Some(own) => format!("did you mean `{own}`? Otherwise {otherwise}"),
+                None => otherwise.into(),
+            };
             problems.push(Problem::new(
                 file,
                 place(),
@@ -176,6 +190,10 @@ pub(super) fn check_names(file: &Path, names: &[String], required: &[&str], allo
         }
     }
     problems
+}
+
+fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
+    spelling::nearest(name, known.iter().copied())
 }
 
 fn list<T: AsRef<str>>(names: &[T]) -> String {
@@ -251,10 +269,28 @@ fn names(file: &Path, reader: &mut csv::Reader<Box<dyn Read>>) -> Result<Vec<Str
         let remedy = "save the file with the line ends of Windows or Unix";
         return Err(Problem::new(file, Place::Line(1), found, expected, remedy).into());
     }
-    cells(&record)
+    let names: Vec<String> = cells(&record)
         .map(|name| text(file, || Place::Line(1), name))
         .map(|name| Ok(unmarked(name?).to_string()))
-        .collect()
+        .collect::<Result<_, InputError>>()?;
+    match names.as_slice() {
+        [only] => separated_by_commas(file, only).map(|()| names),
+        _ => Ok(names),
+    }
+}
+
+/// Refuses a header line in which something other than commas separates the names.
+fn separated_by_commas(file: &Path, only: &str) -> Result<(), InputError> {
+    let separators = [(';', "semicolons"), ('\t', "tabulators"), ('|', "bars")];
+    let found = separators.into_iter().find(|(separator, _)| only.contains(*separator));
+    let Some((_, name)) = found else { return Ok(()) };
+    let remedy = "export it with commas and decimal points; or rename it to end in .txt, which is read with any separator \
+                  and with decimal commas like a file of a rig (`qcar inspect` shows its channels)";
+    let (found, expected) = (
+        format!("columns that are separated by {name}"),
+        "commas, as in a plain table",
+    );
+    Err(Problem::new(file, Place::Line(1), found, expected, remedy).into())
 }
 
 /// Spreadsheets put a byte-order mark before the first name.
@@ -285,6 +321,15 @@ fn push(table: &mut Table, record: &ByteRecord, line: u64) -> Result<(), InputEr
     Ok(())
 }
 
+/// Remedy for a cell that is no finite number.
+fn remedy_of_cell(text: &str) -> &'static str {
+    let is_missing = text.is_empty() || ["na", "n/a", "null", "-"].contains(&text.to_lowercase().as_str());
+    match text.parse::<f64>() {
+        Err(_) if !is_missing => "write a number such as 1000.0, without a unit, blanks or a decimal comma",
+        _ => "a missing sample cannot be filled in: repair the record, or leave out the column or the run",
+    }
+}
+
 fn number(file: &Path, place: impl Fn() -> Place, bytes: &[u8]) -> Result<f64, InputError> {
     if let Ok(number) = fast_float2::parse::<f64, _>(bytes)
         && number.is_finite()
@@ -300,8 +345,7 @@ fn number(file: &Path, place: impl Fn() -> Place, bytes: &[u8]) -> Result<f64, I
             } else {
                 format!("\"{text}\"")
             };
-            let remedy = "a missing sample cannot be filled in: repair the record, or leave out the column or the run";
-            Err(Problem::new(file, place(), found, "a finite number", remedy).into())
+            Err(Problem::new(file, place(), found, "a finite number", remedy_of_cell(text)).into())
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Vertices of a road from samples: checks, steps, and one segment for many samples on a line.
 
 use super::RoadError;
+use crate::proportion::is_alike;
 
 /// Distance from a line below which a point is on it, m: rounding of the arithmetic.
 pub(super) const EXACT: f64 = 1e-12;
@@ -8,6 +9,9 @@ pub(super) const EXACT: f64 = 1e-12;
 pub(super) const RESOLUTION: f64 = 1e-6;
 /// Largest difference between the slope of a sample and that of the chord to the next one.
 const SLOPE_TOLERANCE: f64 = 0.1;
+/// Share of the slopes that must be the same multiple of the rises, within a factor of two, for that to be a unit and not
+/// noise: most of them. A step that is scaled to less than the tolerance of a slope does no harm.
+const MOST: f64 = 0.5;
 /// Largest change of a road, relative to its standard deviation, if a sample is left out.
 const ROUGHNESS_LIMIT: f64 = 0.25;
 
@@ -23,7 +27,9 @@ pub(super) fn points(x: &[f64], z: &[f64], slope: &[f64]) -> Result<Vec<[f64; 2]
     let points: Vec<[f64; 2]> = x.iter().zip(z).map(|(&x, &z)| [x, z]).collect();
     check_points(&points)?;
     check_finite("slope", slope)?;
-    with_steps(&points, slope)
+    let vertices = with_steps(&points, slope)?;
+    check_units(&points, slope)?;
+    Ok(vertices)
 }
 
 pub(super) fn check_points(points: &[[f64; 2]]) -> Result<(), RoadError> {
@@ -64,8 +70,8 @@ fn with_steps(points: &[[f64; 2]], slope: &[f64]) -> Result<Vec<[f64; 2]>, RoadE
     let mut out = vec![points[0]];
     let mut after_step = false;
     for (pair, &slope) in points.windows(2).zip(slope) {
-        let [dx, dz] = [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]];
-        let step = (dz - slope * dx).abs() > SLOPE_TOLERANCE * dx && dx > 0.0;
+        let [dx, dz] = rise(pair);
+        let step = leads_elsewhere(pair, slope);
         if step && after_step {
             return Err(RoadError::SlopeContradictsHeight {
                 x: pair[0][0],
@@ -80,6 +86,37 @@ fn with_steps(points: &[[f64; 2]], slope: &[f64]) -> Result<Vec<[f64; 2]>, RoadE
         after_step = step;
     }
     Ok(out)
+}
+
+/// True if the slope of a sample leads past the next one, to which the road then steps.
+fn leads_elsewhere(pair: &[[f64; 2]], slope: f64) -> bool {
+    let [dx, dz] = rise(pair);
+    (dz - slope * dx).abs() > SLOPE_TOLERANCE * dx && dx > 0.0
+}
+
+fn rise(pair: &[[f64; 2]]) -> [f64; 2] {
+    [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]]
+}
+
+/// Refuses slopes that are a multiple of the rises of the heights. The tolerance of a single slope is as large as the
+/// slopes of a road themselves, so that a unit can be wrong within it. Slopes that are all zero say nothing.
+fn check_units(points: &[[f64; 2]], slope: &[f64]) -> Result<(), RoadError> {
+    let gradual = points.windows(2).zip(slope);
+    let gradual = gradual.filter(|(pair, slope)| !leads_elsewhere(pair, **slope));
+    let stated = gradual.map(|(pair, slope)| (rise(pair), *slope));
+    let mut factors: Vec<f64> = stated
+        .filter(|([dx, _], slope)| slope * dx != 0.0)
+        .map(|([dx, dz], slope)| dz / (slope * dx))
+        .collect();
+    factors.sort_by(f64::total_cmp);
+    let Some(&typical) = factors.get(factors.len() / 2) else {
+        return Ok(());
+    };
+    let same = factors.iter().filter(|factor| is_alike(**factor / typical)).count();
+    if is_alike(typical) || (same as f64) < MOST * factors.len() as f64 {
+        return Ok(());
+    }
+    Err(RoadError::SlopeInOtherUnit { factor: 1.0 / typical })
 }
 
 /// Largest number of points that count as corners, and smallest relative unevenness of their distances.
@@ -98,7 +135,7 @@ pub(super) fn are_corners(x: &[f64], points: &[[f64; 2]], slope: &[f64]) -> bool
     // If a slope leads elsewhere, the lower end of a step has been added.
     let leads = points.len() == x.len()
         && points.windows(2).zip(slope).all(|(pair, slope)| {
-            let [dx, dz] = [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]];
+            let [dx, dz] = rise(pair);
             dx == 0.0 || (dz - slope * dx).abs() <= RESOLUTION
         });
     leads && x.len() <= MOST_CORNERS && longest > UNEVEN * shortest

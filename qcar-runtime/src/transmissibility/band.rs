@@ -7,6 +7,7 @@ use nalgebra::Complex;
 use super::{Estimator, Options, Point};
 use crate::campaign::{History, Quantity, Spacing, Sweep, Test};
 use crate::error::{InputError, Place, Problem};
+use crate::proportion::is_alike;
 use crate::shown::shown;
 
 /// Default number of frequencies.
@@ -142,8 +143,6 @@ fn has_its_velocity(
     sweep: &Sweep,
     bands: &[(f64, f64)],
 ) -> Result<(), InputError> {
-    /// Rigs deviate from their set values by less than units and signs do.
-    const DEVIATION: f64 = 2.0;
     if reference.quantity == Quantity::Force {
         return Ok(());
     }
@@ -154,8 +153,7 @@ fn has_its_velocity(
     };
     let duration = history.len() as f64 / history.sample_rate;
     let velocity = 2.0 * (typical(sweep, bands) * pace / duration).sqrt() / history.sample_rate;
-    let ratio = velocity / sweep.peak_velocity;
-    if (1.0 / DEVIATION..=DEVIATION).contains(&ratio) {
+    if is_alike(velocity / sweep.peak_velocity) {
         return Ok(());
     }
     let (place, found) = (

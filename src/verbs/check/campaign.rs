@@ -1,5 +1,6 @@
 //! The runs of a campaign, the flaws of their samples, and units that the samples contradict.
 
+use std::fmt::Display;
 use std::path::Path;
 
 use qcar_dsl::response::Wanted;
@@ -13,6 +14,7 @@ use crate::parameters;
 use crate::sensors;
 use crate::suspect_unit::{Statistics, suspicion};
 use crate::table::{Table, number};
+use crate::verbs::{fit, kc};
 
 /// Significant digits.
 const DIGITS: usize = 6;
@@ -34,14 +36,21 @@ pub(super) fn verdict(folder: &Path) -> Result<(bool, String), Failure> {
         }
     }
     sentences.extend(suspect_units(&campaign)?);
-    let short = short_roads(&campaign)?;
-    let well = !findings.iter().any(|finding| finding.fatal) && short.is_empty();
-    sentences.extend(short);
-    let verdict = match (well, sentences.is_empty()) {
-        (true, true) => "ok".to_string(),
-        (true, false) => "ok, with warnings".into(),
-        (false, _) => "not fit for a fit".into(),
+    let is_dead = findings.iter().any(|finding| finding.fatal);
+    let unfit = refusals(fit::check(&campaign, &model));
+    let unusable = unusable(&campaign)?;
+    let verdict = match (is_dead || !unfit.is_empty(), unusable.is_empty(), sentences.is_empty()) {
+        (true, _, _) => "cannot be fitted",
+        (false, false, _) => "has runs that cannot be used",
+        (false, true, false) => "ok, with warnings",
+        (false, true, true) => "ok",
     };
+    let well = !is_dead && unfit.is_empty() && unusable.is_empty();
+    for sentence in unfit.into_iter().chain(unusable) {
+        if !sentences.contains(&sentence) {
+            sentences.push(sentence);
+        }
+    }
     let text: String = sentences.iter().map(|sentence| format!("{sentence}\n")).collect();
     Ok((
         well,
@@ -58,6 +67,24 @@ fn check_values(campaign: &Campaign, model: &Loaded) -> Result<(), InputError> {
         tyre(campaign)?;
     }
     Ok(())
+}
+
+/// What the verbs refuse that use other runs than a fit does.
+fn unusable(campaign: &Campaign) -> Result<Vec<String>, InputError> {
+    let mut sentences = short_roads(campaign)?;
+    if kc::has_curves(campaign) {
+        sentences.extend(refusals(kc::gradients(campaign)));
+    }
+    let is_table = |run: &&Run| matches!(run.test, Test::Dynamometer(_));
+    let tables = campaign.runs.iter().filter(is_table);
+    sentences.extend(tables.flat_map(|run| refusals(campaign.force_table(run))));
+    Ok(sentences)
+}
+
+/// The sentences of a refusal, one for each problem.
+fn refusals<T>(result: Result<T, impl Display>) -> Vec<String> {
+    let refused = result.err().map(|refusal| refusal.to_string());
+    refused.iter().flat_map(|text| text.lines()).map(String::from).collect()
 }
 
 /// Cleat runs that would leave their roads, which no ride may.

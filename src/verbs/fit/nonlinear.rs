@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
 
-use qcar_runtime::campaign::Campaign;
+use qcar_runtime::campaign::{Campaign, Role};
 use qcar_runtime::discover::Evidence;
 use qcar_runtime::discover::answer::Update;
 use qcar_runtime::discover::candidate::Workshop;
@@ -123,6 +123,19 @@ pub(crate) fn fit(mut campaign: Campaign, choices: &Choices) -> Result<Nonlinear
         seconds: begun.elapsed().as_secs_f64(),
         campaign,
     })
+}
+
+/// Checks that the runs of a campaign can be fitted; see [`check`](super::check).
+///
+/// # Errors
+/// Fails as the fit does.
+pub(super) fn check(campaign: &Campaign, about: &About, choices: &Choices) -> Result<(), Failure> {
+    if !campaign.runs.iter().any(|run| run.role == Role::Fit) {
+        return Ok(());
+    }
+    plan(campaign, about, choices)?;
+    Evidence::from_campaign(campaign, about)?;
+    Ok(())
 }
 
 /// A sentence on the sensors whose residual is unknown, because the model has no finite prediction of a run.

@@ -8,6 +8,7 @@ use qcar_runtime::campaign::{Campaign, Role, RoleNames, Test};
 use qcar_runtime::metric::{Course, Ground};
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::simulate::{Cleat, tyre_of};
+use qcar_runtime::statics::contradictions;
 use qcar_runtime::tyre::Tyre;
 
 use crate::catalogue::{self, Loaded};
@@ -240,7 +241,8 @@ fn finish(
         .filter(|(name, _)| !own.contains_key(name.as_str()))
         .map(|(name, value)| (name.clone(), *value))
         .collect();
-    let notes = out_of_range(model.about(), values.as_slice());
+    let mut notes = out_of_range(model.about(), values.as_slice());
+    notes.extend(campaign.iter().flat_map(|own| contradictions(model.about(), own)));
     let tyre = match (fact("r_tire"), fact("static_tire_def")) {
         (None, _) | (_, None) => None,
         _ => Some(tyre_of(&fact, Path::new("[vehicle]"))?),

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use qcar_runtime::campaign::Declared;
 use qcar_runtime::error::{InputError, Place, Problem};
+use qcar_runtime::syntax;
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -187,17 +188,8 @@ impl Read {
                 file,
             }),
             Err(error) => {
-                let start = error.span().map_or(0, |span| span.start);
-                let remedy = "docs/targets.md describes every key";
-                let found = error.message().lines().collect::<Vec<_>>().join(" ");
-                Err(Problem::new(
-                    path,
-                    Place::in_text(&text, start, ""),
-                    found,
-                    "a file of targets",
-                    remedy,
-                )
-                .into())
+                let remedy = "correct it; docs/targets.md describes every key";
+                Err(syntax::of_toml(path, &text, &error, remedy).into())
             }
         }
     }

@@ -182,12 +182,11 @@ fn cleat(section: &Section<'_>, known: &RunContext<'_>, file: Option<&String>) -
             [] => "the name of a [[road]], of which there is none".to_string(),
             names => format!("the name of a [[road]]: {}", names.join(", ")),
         };
-        section.wrong(
-            "cleat",
-            format!("\"{cleat}\""),
-            expected,
-            "correct the name, or add the road",
-        );
+        let remedy = match spelling::nearest(&cleat, roads.iter().map(|road| road.name.as_str())) {
+            Some(nearest) => format!("did you mean \"{nearest}\"? Otherwise add the road"),
+            None => "correct the name, or add the road".into(),
+        };
+        section.wrong("cleat", format!("\"{cleat}\""), expected, remedy);
     }
     Some(Test::Cleat {
         speed: speed?,
