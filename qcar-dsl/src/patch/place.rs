@@ -17,6 +17,13 @@ pub struct Place {
     pub name: String,
 }
 
+impl Place {
+    /// Its direction and its name there.
+    pub fn key(&self) -> (&str, &str) {
+        (&self.direction, &self.name)
+    }
+}
+
 /// Every place that a pattern fits, in the order of the text.
 pub fn fitting(base: &ModelTree, roles: &Roles, pattern: &Pattern) -> Vec<Place> {
     let mut places: Vec<Place> = Vec::new();
@@ -101,14 +108,15 @@ fn matching(all: &[(Name, Option<Name>)], fits: impl Fn(&str) -> bool) -> Option
 fn is_on(base: &ModelTree, roles: &Roles, along: &str, pattern: &Pattern, name: &str) -> bool {
     let Some(wanted) = &pattern.on else { return true };
     let end = base.link(along, name).and_then(|link| upper(base, along, link));
-    let wanted = roles.meant(base, along, &wanted.text).unwrap_or(wanted.text.clone());
+    let meant = roles.meant(base, (along, name), along, &wanted.text);
+    let wanted = meant.unwrap_or(wanted.text.clone());
     end.is_some_and(|end| base.pointed_at(along, &end) == base.pointed_at(along, &wanted))
 }
 
 /// True if the model has what this name means. A pivot that a mass is to have must be a point on that mass.
 fn has(base: &ModelTree, roles: &Roles, (kind, place): (PlaceKind, &Place), name: &str) -> bool {
     let along = &place.direction;
-    match roles.meant(base, along, name) {
+    match roles.meant(base, place.key(), along, name) {
         Some(point) if name == "pivot" && kind == PlaceKind::Mass => base.pointed_at(along, &point) == place.name,
         Some(_) => true,
         None => base.global(name).is_some() || base.declares(along, name),
