@@ -713,6 +713,22 @@ fn every_tyre_has_its_wheel_and_its_suspension() {
     assert_eq!(effect("bushing_relaxation").places(&two), Vec::<String>::new());
 }
 
+/// A place that an effect does not fit is refused with what it lacks.
+#[test]
+fn a_refused_place_is_told_what_it_lacks() {
+    let two = written(TWO_TYRES);
+    let refusal = |name: &str, place: &str| effect(name).apply(&two, place, &|_| None).unwrap_err().to_string();
+    let tyre = refusal("coulomb_friction", "rear_tire");
+    assert!(
+        tyre.contains("it has no damping") && tyre.contains("write `front_strut` or `rear_strut`"),
+        "{tyre}"
+    );
+    let spring = refusal("progressive_spring", "rear_tire");
+    assert!(spring.contains("it does not have the role `suspension`"), "{spring}");
+    let absent = refusal("coulomb_friction", "rear_shock");
+    assert!(absent.contains("does not apply at `rear_shock` of two\n"), "{absent}");
+}
+
 /// The friction at the rear strut is between the body and the rear wheel, and is seen through the lever of that strut.
 #[test]
 fn an_effect_acts_at_the_wheel_of_its_own_tyre() {
