@@ -264,7 +264,7 @@ fn corners(base: &ModelTree, graph: &Graph, masses: &Masses) -> Vec<Corner> {
 
 /// The mass about which levers of the suspension of a wheel turn, if it is a separate mass, and the named point on that
 /// mass or on the body about which they turn.
-fn pivot(base: &ModelTree, graph: &Graph, wheel: &String, body: Option<&String>) -> (Option<String>, Option<String>) {
+fn pivot(base: &ModelTree, graph: &Graph, wheel: &str, body: Option<&String>) -> (Option<String>, Option<String>) {
     let along = graph.along();
     let suspending = graph.joints.iter().filter(|joint| joint.ends.contains(wheel));
     let points: Vec<(String, String)> = suspending
