@@ -7,7 +7,7 @@ use crate::terminal::{self, Color};
 use crate::units::{self, Units};
 use crate::verbs::{
     check, compare, completions, diff, discover, effects, explore, export, fit, frf, import, inspect, kc, matrices,
-    new, patch, plan, score, sensitivity, show, simulate, study, target,
+    modes, new, patch, plan, score, sensitivity, show, simulate, study, target,
 };
 
 /// Quarter-car axle models: compile them, fit them to rig data
@@ -45,6 +45,7 @@ enum Verb {
     Check(check::Arguments),
     Show(show::Arguments),
     Matrices(matrices::Arguments),
+    Modes(modes::Arguments),
     Frf(frf::Arguments),
     Fit(fit::Arguments),
     Plan(plan::Arguments),
@@ -78,6 +79,7 @@ impl Cli {
             Verb::Check(arguments) => check::run(&arguments),
             Verb::Show(arguments) => show::run(&arguments),
             Verb::Matrices(arguments) => matrices::run(&arguments),
+            Verb::Modes(arguments) => modes::run(&arguments),
             Verb::Frf(arguments) => frf::run(&arguments),
             Verb::Fit(arguments) => fit::run(&arguments),
             Verb::Plan(arguments) => plan::run(&arguments),

@@ -37,6 +37,8 @@ mod sensors;
 pub mod parameters;
 // Parameter sets for which a mass is zero or negative.
 pub mod inertias;
+// Parameter values at which a model is unstable.
+mod stability;
 // Names of roads on the command line.
 pub mod roads;
 // Models by name or path.

@@ -10,6 +10,7 @@ use qcar_runtime::response::parameters::Values;
 use serde::Serialize;
 
 use crate::parameters::out_of_range;
+use crate::stability::unstable;
 
 /// Rows of numbers.
 pub type Rows = Vec<Vec<f64>>;
@@ -31,7 +32,7 @@ pub struct StateSpace {
     pub parameters: Vec<String>,
     /// The value of every parameter, SI.
     pub values: BTreeMap<String, f64>,
-    /// Values outside the ranges of the model, as sentences.
+    /// Values outside the ranges of the model and those at which it is unstable, as sentences.
     pub notices: Vec<String>,
     /// A, B, C and D.
     #[serde(flatten)]
@@ -117,7 +118,10 @@ pub fn without_sensitivities(model: &dyn Model, values: &Values, axis: Option<&s
         outputs: keep.outputs.iter().map(|&at| output_name(&about.outputs[at])).collect(),
         parameters: leaders.map(|k| about.parameters[k].name.to_string()).collect(),
         values: names.zip(p.iter().copied()).collect(),
-        notices: out_of_range(about, p),
+        notices: out_of_range(about, p)
+            .into_iter()
+            .chain(unstable(model, values))
+            .collect(),
         matrices: matrices(model, p, &keep),
         sensitivities: BTreeMap::new(),
     }

@@ -22,6 +22,8 @@ pub mod effects;
 pub mod patch;
 // Matrices with their derivatives.
 pub mod matrices;
+// Natural frequencies and mode shapes.
+pub mod modes;
 // Frequency responses.
 pub mod frf;
 // A model for other tools.

@@ -675,6 +675,76 @@ fn a_named_point_of_a_pitching_body_is_an_end_of_the_suspension() {
     }
 }
 
+/// Two equal tyres under a beam: each wheel has a suspension, and an effect at one strut acts at its own wheel.
+const TWO_TYRES: &str = "axle two { \"A beam on two wheels\"
+    known param m_b: kg = 800; known param j_b: kg m^2 = 1200; known param a: m = 1.3;
+    param m_w: kg = 40 in 10..80; param k: N/m = 25e3 in 1e4..8e4; param c: N s/m = 1500 in 100..5000;
+    param kt: N/m = 2e5 in 1e5..4e5;
+    direction z {
+        road front_pad; road rear_pad;
+        mass body = m_b; inertia pitch = j_b; mass front_wheel = m_w; mass rear_wheel = m_w;
+        point nose = body + a*pitch; point tail = body - a*pitch;
+        link front_tire: front_wheel - front_pad { spring kt; }
+        link rear_tire: rear_wheel - rear_pad { spring kt; }
+        link front_strut: nose - front_wheel { spring k; damper c; }
+        link rear_strut: tail - 0.9*rear_wheel { spring k; damper c; }
+        output nose.acceleration; output tail.acceleration; output pitch.acceleration;
+        output front_wheel.acceleration; output rear_wheel.acceleration;
+    } }";
+
+#[test]
+fn every_tyre_has_its_wheel_and_its_suspension() {
+    let two = written(TWO_TYRES);
+    for name in ["coulomb_friction", "digressive_damper", "progressive_spring", "inerter"] {
+        assert_eq!(effect(name).places(&two), ["front_strut", "rear_strut"], "{name}");
+    }
+    assert_eq!(
+        effect("tire_progressive_stiffness").places(&two),
+        ["front_tire", "rear_tire"]
+    );
+    assert_eq!(
+        effect("secondary_resonator").places(&two),
+        ["front_wheel", "rear_wheel"]
+    );
+    assert_eq!(
+        effect("drag_to_ground").places(&two),
+        ["body", "front_wheel", "rear_wheel"]
+    );
+    assert_eq!(effect("bushing_relaxation").places(&two), Vec::<String>::new());
+}
+
+/// A place that an effect does not fit is refused with what it lacks.
+#[test]
+fn a_refused_place_is_told_what_it_lacks() {
+    let two = written(TWO_TYRES);
+    let refusal = |name: &str, place: &str| effect(name).apply(&two, place, &|_| None).unwrap_err().to_string();
+    let tyre = refusal("coulomb_friction", "rear_tire");
+    assert!(
+        tyre.contains("it has no damping") && tyre.contains("write `front_strut` or `rear_strut`"),
+        "{tyre}"
+    );
+    let spring = refusal("progressive_spring", "rear_tire");
+    assert!(spring.contains("it does not have the role `suspension`"), "{spring}");
+    let absent = refusal("coulomb_friction", "rear_shock");
+    assert!(absent.contains("does not apply at `rear_shock` of two\n"), "{absent}");
+}
+
+/// The friction at the rear strut is between the body and the rear wheel, and is seen through the lever of that strut.
+#[test]
+fn an_effect_acts_at_the_wheel_of_its_own_tyre() {
+    let friction = effect("coulomb_friction");
+    let at = |form: &str, place: &str| {
+        let patched = patched(&friction.in_form(form).unwrap(), &written(TWO_TYRES), place);
+        patched.text("")
+    };
+    let beside = at("between_wheel_and_body", "rear_strut");
+    assert!(beside.contains("link friction: body - rear_wheel"), "{beside}");
+    let beside = at("between_wheel_and_body", "front_strut");
+    assert!(beside.contains("link friction: body - front_wheel"), "{beside}");
+    let inside = at("in_damper", "rear_strut");
+    assert!(inside.contains("/ 0.9"), "{inside}");
+}
+
 const STACK: &str = "axle stack { \"Three masses on a shaker\"
     param m: kg = 1 in 0.1..10 \"Mass\"; param k: N/m = 1e4 in 1..1e6 \"Stiffness\";
     direction z {

@@ -47,6 +47,8 @@ pub mod transmissibility;
 pub mod response;
 // Free vibration of the model.
 pub mod modes;
+// All free motions, also those that do not oscillate.
+pub mod free_motions;
 // Bounded nonlinear least squares.
 pub mod least_squares;
 // The rig fit of thesis section 3.5.

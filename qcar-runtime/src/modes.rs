@@ -67,12 +67,16 @@ pub fn frequencies(model: &(impl Model + ?Sized), values: &Values) -> Vec<(f64, 
 
 /// Eigenvalue of each mode with positive imaginary part, lowest frequency first.
 pub(crate) fn vibrations(a: &Ordered) -> Vec<Complex<f64>> {
+    eigenvalues(a).into_iter().filter(vibrates).collect()
+}
+
+/// All eigenvalues, lowest frequency first.
+pub(crate) fn eigenvalues(a: &Ordered) -> Vec<Complex<f64>> {
     // A model without masses has no modes, and the Schur form of a matrix with NaN would not converge.
     if a.order().is_empty() || !a.is_finite() {
         return Vec::new();
     }
-    let roots = a.dense().complex_eigenvalues();
-    let mut roots: Vec<Complex<f64>> = roots.iter().copied().filter(vibrates).collect();
+    let mut roots: Vec<Complex<f64>> = a.dense().complex_eigenvalues().iter().copied().collect();
     roots.sort_by(|a, b| frequency(*a).total_cmp(&frequency(*b)));
     roots
 }
@@ -83,15 +87,20 @@ pub(crate) fn first_vibrations(a: &Ordered, count: usize) -> Vec<Complex<f64>> {
     lowest::lowest_vibrations(a, count).unwrap_or_else(|| vibrations(a))
 }
 
-fn vibrates(root: &Complex<f64>) -> bool {
-    root.im > 1e-6 * root.norm() && root.norm() > TAU * RIGID
+pub(crate) fn vibrates(root: &Complex<f64>) -> bool {
+    root.im > 1e-6 * root.norm() && !is_rigid(*root)
 }
 
-fn frequency(root: Complex<f64>) -> f64 {
+/// True for the eigenvalue of a motion that nothing holds.
+pub(crate) fn is_rigid(root: Complex<f64>) -> bool {
+    root.norm() <= TAU * RIGID
+}
+
+pub(crate) fn frequency(root: Complex<f64>) -> f64 {
     root.norm() / TAU
 }
 
-fn damping(root: Complex<f64>) -> f64 {
+pub(crate) fn damping(root: Complex<f64>) -> f64 {
     -root.re / root.norm()
 }
 
@@ -182,6 +191,15 @@ pub(crate) fn dynamics(model: &(impl Model + ?Sized), p: &[f64]) -> Ordered {
 }
 
 fn mode(model: &(impl Model + ?Sized), a: &Ordered, root: Complex<f64>) -> Mode {
+    Mode {
+        frequency: frequency(root),
+        damping: damping(root),
+        shape: shape(model, a, root),
+    }
+}
+
+/// The motion of every point that belongs to an eigenvalue; the largest amplitude is 1.
+pub(crate) fn shape(model: &(impl Model + ?Sized), a: &Ordered, root: Complex<f64>) -> Vec<Part> {
     let vector = eigenvector(a, root);
     let states = model.about().states.iter().zip(vector.iter());
     let positions = states.filter(|(state, _)| state.kind == StateKind::Position);
@@ -193,10 +211,6 @@ fn mode(model: &(impl Model + ?Sized), a: &Ordered, root: Complex<f64>) -> Mode 
         axis: state.axis.to_string(),
         amplitude: *value / largest,
     };
-    let shape = positions.iter().map(part).filter(|part| part.amplitude.norm() > STILL);
-    Mode {
-        frequency: frequency(root),
-        damping: damping(root),
-        shape: shape.collect(),
-    }
+    let parts = positions.iter().map(part);
+    parts.filter(|part| part.amplitude.norm() > STILL).collect()
 }

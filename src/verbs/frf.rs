@@ -20,6 +20,7 @@ use crate::catalogue;
 use crate::failure::{Failure, flag};
 use crate::json::{self, Ordered};
 use crate::parameters;
+use crate::stability::unstable;
 use crate::table::{Table, noted, noted_below, number};
 use crate::terminal::{aside, prose};
 use crate::units;
@@ -114,7 +115,10 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let response = FrequencyResponse {
         channels: responses.collect::<Result<_, Failure>>()?,
         model: model.about().name.to_string(),
-        notices: parameters::out_of_range(model.about(), values.as_slice()),
+        notices: parameters::out_of_range(model.about(), values.as_slice())
+            .into_iter()
+            .chain(unstable(&*model, &values))
+            .collect(),
     };
     let values = response.channels.0.iter().map(|(_, channel)| channel);
     parameters::require_finite(
@@ -135,7 +139,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
 #[derive(Serialize)]
 struct FrequencyResponse {
     model: String,
-    /// Values outside the ranges of the model, as sentences.
+    /// Values outside the ranges of the model and those at which it is unstable, as sentences.
     notices: Vec<String>,
     channels: Ordered<ChannelResponse>,
 }

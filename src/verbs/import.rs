@@ -73,7 +73,10 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         });
     }
     let proposed = sensors::propose(&files, model.about());
-    let runs: Vec<Vec<kind::Proposed>> = files.iter().map(|file| kind::propose(file, &proposed)).collect();
+    let runs: Vec<Vec<kind::Proposed>> = files
+        .iter()
+        .map(|file| kind::propose(file, &proposed, model.about()))
+        .collect();
     let model_name = seen_from(
         &arguments.out,
         &arguments.model,

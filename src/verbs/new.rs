@@ -9,6 +9,8 @@ use crate::failure::{Failure, flag};
 
 // A model file and its parameters.
 mod axle;
+// The records of a campaign without a rig for cars.
+pub(super) mod records;
 // An empty campaign folder.
 pub(super) mod campaign;
 // The workbook of a vehicle.

@@ -44,6 +44,7 @@ fn written(of: &Studied, file: &str) -> Value {
 fn verbs_print_the_keys_that_are_documented() {
     agree("inspect", &result(&format!("inspect {AXLE}/rig/sweep_025.csv.gz")));
     agree("matrices", &result("matrices quarter_car"));
+    agree("modes", &result("modes quarter_car"));
     agree("fit", &result(&format!("fit {AXLE} --starts 1")));
     agree("plan", &result(&format!("plan {AXLE}")));
     agree("kc", &result(&format!("kc {AXLE}"))[0]);

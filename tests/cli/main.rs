@@ -20,6 +20,7 @@ mod interruption;
 mod json_reference;
 mod laws;
 mod lost_sensors;
+mod modes;
 mod newcomer;
 mod noisy_inputs;
 mod outputs;

@@ -1,7 +1,10 @@
 //! The first files of somebody who has none yet.
 
+use std::f64::consts::TAU;
 use std::fs;
 use std::path::Path;
+
+use serde_json::Value;
 
 use crate::common::{run_line as in_folder, sweep};
 
@@ -112,4 +115,131 @@ fn a_campaign_for_a_shipped_model_has_its_masses_as_sensors() {
         unknown.stderr
     );
     assert!(!folder.path().join("other").exists());
+}
+
+const DRIVE: &str = "axle drive { \"A motor turns a load through a shaft\"
+    known param j_m: kg m^2 = 0.02125;
+    param j_l: kg m^2 = 0.5 in 0.05..5 \"Load\"; param k_sh: N m/rad = 500 in 50..1e5; param c_sh: N m s/rad = 0.3 in 0.01..100;
+    direction phi {
+        inertia motor = j_m; inertia load = j_l; force torque on motor;
+        link shaft: motor - load { spring k_sh; damper c_sh; }
+        link bearing: load { damper 0.4 N m s; }
+        output motor.velocity; output load.velocity; output shaft.force;
+    } }";
+
+/// A record of 10 s of the drive with a shaft of 800 N m/rad and 0.5 N m s/rad: eleven sines of torque, which differ from
+/// run to run, by small steps.
+fn record_of_drive(header: &str, run: usize) -> String {
+    let torque = |t: f64| -> f64 {
+        let sine = |k: usize| (TAU * (0.7 * k as f64) * t + (k * k * (run + 2)) as f64).sin();
+        (1..60).step_by(6).map(sine).sum()
+    };
+    let ([mut motor, mut load, mut twist], dt) = ([0.0; 3], 2e-5);
+    let mut text = header.to_string();
+    for step in 0..500_000 {
+        let t = step as f64 * dt;
+        let shaft = 800.0 * twist + 0.5 * (motor - load);
+        if step % 50 == 0 {
+            text += &format!("\n{t:.3},{:.6},{motor:.8},{load:.8},{shaft:.7}", torque(t));
+        }
+        motor += dt * (torque(t) - shaft) / 0.02125;
+        load += dt * (shaft - 0.4 * load) / 0.5;
+        twist += dt * (motor - load);
+    }
+    text
+}
+
+#[test]
+fn a_campaign_of_a_machine_has_its_inputs_and_outputs_and_fits_once_the_records_are_there() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("drive.axle"), DRIVE).unwrap();
+    let said = well(folder.path(), "new campaign rig --model drive.axle --dir .");
+    let header = "time,torque_force,motor_velocity,load_velocity,shaft_force";
+    assert!(said.contains(header), "{said}");
+    let manifest = fs::read_to_string(folder.path().join("rig/campaign.toml")).unwrap();
+    for lines in [
+        "location = \"torque\"\nside = \"centre\"\naxis = \"phi\"\nquantity = \"force\"\nunit = \"N m\"",
+        "location = \"load\"\nside = \"centre\"\naxis = \"phi\"\nquantity = \"velocity\"\nunit = \"rad/s\"",
+        "j_m = 0.02125 # kg m^2; as in the model, give yours",
+        "[parameters.j_l] # Load\n",
+        "[parameters.k_sh]\nvalue = 500\nunit = \"N m/rad\"\nrange = [50, 100000]\nfit = true",
+        header,
+    ] {
+        assert!(manifest.contains(lines), "expected\n{lines}\nin\n{manifest}");
+    }
+    for absent in ["tire", "sweep", "cleat", "bounce", "pad"] {
+        assert!(!manifest.contains(absent), "{absent} in\n{manifest}");
+    }
+    for run in [1, 2] {
+        let file = folder.path().join(format!("rig/records/run_{run}.csv"));
+        fs::write(file, record_of_drive(header, run)).unwrap();
+    }
+    let checked = well(folder.path(), "check rig");
+    assert!(checked.contains("ok"), "{checked}");
+    let fitted: Value = serde_json::from_str(&well(folder.path(), "fit rig --starts 1 --format json")).unwrap();
+    for (name, truth) in [("k_sh", 800.0), ("c_sh", 0.5), ("j_l", 0.5)] {
+        let value = fitted["parameters"][name]["value"].as_f64().unwrap();
+        assert!((value / truth - 1.0).abs() < 0.01, "{name} is {value}");
+    }
+}
+
+/// A mass on a spring and a damper, let go at 10 mm: what nothing drives has responses alone.
+#[test]
+fn a_campaign_of_what_nothing_drives_is_of_free_decays() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "axle decay { \"A mass on a spring\"
+        known param m: kg = 2; param k: N/m in 100..1e5; param c: N s/m in 0.01..100; param loose: N/m = 10;
+        direction z { mass body = m; link spring: body { spring k + loose; damper c; } output body.position; } }";
+    fs::write(folder.path().join("decay.axle"), text).unwrap();
+    let said = well(folder.path(), "new campaign rig --model decay.axle");
+    assert!(said.contains("time,body_displacement\n"), "{said}");
+    for (run, start) in [(1, 0.01), (2, 0.007)] {
+        let omega = (5e3_f64 / 2.0 - 4.0).sqrt();
+        let motion = |t: f64| start * (-2.0 * t).exp() * ((omega * t).cos() + 2.0 / omega * (omega * t).sin());
+        let line = |k: usize| format!("\n{:.3},{:.9}", k as f64 * 1e-3, motion(k as f64 * 1e-3));
+        let table = "time,body_displacement".to_string() + &(0..2000).map(line).collect::<String>();
+        fs::write(folder.path().join(format!("rig/records/run_{run}.csv")), table).unwrap();
+    }
+    let checked = well(folder.path(), "check rig");
+    assert!(checked.contains("ok"), "{checked}");
+    let fitted: Value = serde_json::from_str(&well(folder.path(), "fit rig --format json")).unwrap();
+    // The model has no range of the other spring, which keeps its value.
+    for (name, truth) in [("k", 4990.0), ("c", 8.0), ("loose", 10.0)] {
+        let value = fitted["parameters"][name]["value"].as_f64().unwrap();
+        assert!((value / truth - 1.0).abs() < 0.01, "{name} is {value}");
+    }
+}
+
+/// A sweep on one pad does not describe a car on two: each pad is an input.
+#[test]
+fn a_campaign_of_two_tyres_has_both_pads() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "axle two { \"A beam on two wheels\"
+        known param m: kg = 800; known param j: kg m^2 = 1200; param m_w: kg = 40 in 10..80; param k: N/m = 25e3 in 1e4..8e4;
+        param c: N s/m = 1500 in 100..5e3; param kt: N/m = 2e5 in 1e5..4e5;
+        direction z {
+            road front_pad; road rear_pad; mass body = m; inertia pitch = j; mass front = m_w; mass rear = m_w;
+            link front_tire: front - front_pad { spring kt; } link rear_tire: rear - rear_pad { spring kt; }
+            link front_strut: body + 1.3*pitch - front { spring k; damper c; }
+            link rear_strut: body - 1.3*pitch - rear { spring k; damper c; }
+            output body.acceleration; output pitch.acceleration; output front.acceleration; output rear.acceleration;
+        } }";
+    fs::write(folder.path().join("two.axle"), text).unwrap();
+    let said = well(folder.path(), "new campaign rig --model two.axle");
+    assert!(
+        said.contains("time,front_pad_acceleration,rear_pad_acceleration,body_acceleration,pitch_acceleration"),
+        "{said}"
+    );
+    let manifest = fs::read_to_string(folder.path().join("rig/campaign.toml")).unwrap();
+    assert!(
+        manifest.contains(
+            "location = \"pitch\"\nside = \"centre\"\naxis = \"z\"\nquantity = \"acceleration\"\nunit = \"rad/s^2\""
+        ),
+        "{manifest}"
+    );
+    assert!(
+        manifest.contains("m = 800 # kg; as in the model, give yours\n"),
+        "{manifest}"
+    );
+    assert!(manifest.contains("\n[parameters.m_w]\nvalue = 40\n"), "{manifest}");
 }

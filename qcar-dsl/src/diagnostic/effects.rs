@@ -51,9 +51,16 @@ pub fn sensor_changes_model(span: Span) -> Diagnostic {
     .hint("write `delay m by …;` or `scale m by …;` alone, or an effect `at link l` or `at mass m`")
 }
 
-/// A place of a model that the pattern of an effect does not fit.
-pub fn no_such_place(span: Span, effect: &str, place: &str, model: &str, places: &[&str]) -> Diagnostic {
-    let message = format!("effect `{effect}` does not apply at `{place}` of {model}");
+/// A place of a model that the pattern of an effect does not fit, and `why`; without a reason, the model lacks it.
+pub fn no_such_place(
+    span: Span,
+    effect: &str,
+    (place, model): (&str, &str),
+    why: Option<String>,
+    places: &[&str],
+) -> Diagnostic {
+    let why = why.map_or(String::new(), |why| format!(": {why}"));
+    let message = format!("effect `{effect}` does not apply at `{place}` of {model}{why}");
     let hint = match places {
         [] => format!("choose another effect: {model} has no place for this one"),
         _ => format!("write {}", one_of(places)),

@@ -136,7 +136,7 @@ impl Report {
 impl std::error::Error for Report {}
 
 /// Words in backticks, joined by commas and a last `or`.
-fn one_of<Word: AsRef<str>>(words: &[Word]) -> String {
+pub(crate) fn one_of<Word: AsRef<str>>(words: &[Word]) -> String {
     listed(words, "or")
 }
 

@@ -75,7 +75,7 @@ impl<'a> Bindings<'a> {
     /// The same along a direction. A word that is a role, and not a name in the model, means the part with this role.
     pub fn name_along(&self, name: &Name, direction: &str) -> String {
         let own = self.name(name);
-        let meant = self.roles.meant(self.base, direction, own);
+        let meant = self.roles.meant(self.base, self.place.key(), direction, own);
         meant.filter(|_| own == name.text).unwrap_or(own.to_string())
     }
 
@@ -109,7 +109,7 @@ impl<'a> Bindings<'a> {
     pub fn doc(&self, of: &EffectParameter) -> String {
         let along = &self.place.direction;
         let lacks = |point: &&Name| {
-            let meant = self.roles.meant(self.base, along, &point.text);
+            let meant = self.roles.meant(self.base, self.place.key(), along, &point.text);
             self.base
                 .coordinate(along, meant.as_deref().unwrap_or(&point.text))
                 .is_none()
@@ -229,7 +229,7 @@ impl<'a> Bindings<'a> {
 }
 
 fn lever_of(base: &ModelTree, roles: &Roles, place: &Place, link: &Link, point: &str) -> Option<Expression> {
-    let meant = roles.meant(base, &place.direction, point);
+    let meant = roles.meant(base, place.key(), &place.direction, point);
     lever(base, &place.direction, link, meant.as_deref().unwrap_or(point))
 }
 

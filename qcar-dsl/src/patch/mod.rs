@@ -278,7 +278,8 @@ impl Patch {
         let Some(place) = places.iter().find(|own| own.label == place) else {
             let labels: Vec<&str> = places.iter().map(|place| place.label.as_str()).collect();
             let (name, model) = (&self.effect.name, &base.axle.name.text);
-            let mistake = effects::no_such_place(name.span, &name.text, place, model, &labels);
+            let why = place::lacks(&base, &roles, &self.effect.pattern, place);
+            let mistake = effects::no_such_place(name.span, &name.text, (place, model), why, &labels);
             return Err(self.report(refused(mistake)));
         };
         let forms = self.own_forms();

@@ -4,6 +4,7 @@ use super::model_tree::{ModelTree, coordinates, links};
 use super::roles::Roles;
 use super::stretch::upper;
 use super::terms::has_terms;
+use crate::diagnostic::one_of;
 use crate::front::syntax::{Coordinate, CoordinateKind, Direction, Name, Pattern, PlaceKind, Statement};
 
 /// A place of a model where an effect may apply.
@@ -15,6 +16,13 @@ pub struct Place {
     pub direction: String,
     /// The name of the link, mass or location in that direction.
     pub name: String,
+}
+
+impl Place {
+    /// Its direction and its name there.
+    pub fn key(&self) -> (&str, &str) {
+        (&self.direction, &self.name)
+    }
 }
 
 /// Every place that a pattern fits, in the order of the text.
@@ -43,6 +51,43 @@ pub fn fitting(base: &ModelTree, roles: &Roles, pattern: &Pattern) -> Vec<Place>
         given.all(|given| has(base, roles, (pattern.kind, place), &given.text))
     });
     places
+}
+
+/// What a part of the model lacks for a pattern that does not fit it; `None` if the model has no such part.
+pub fn lacks(base: &ModelTree, roles: &Roles, pattern: &Pattern, label: &str) -> Option<String> {
+    let (home, name) = label
+        .split_once('.')
+        .map_or((None, label), |(home, name)| (Some(home), name));
+    let is_home = |direction: &&Direction| home.is_none_or(|home| direction.name.text == home);
+    let own_kind = |direction: &Direction| match pattern.kind {
+        PlaceKind::Link => base.link(&direction.name.text, name).is_some(),
+        PlaceKind::Mass | PlaceKind::Sensor => base.coordinate(&direction.name.text, name).is_some(),
+        PlaceKind::Force => acting(direction).any(|force| force.text == name),
+    };
+    let direction = base
+        .directions()
+        .filter(is_home)
+        .find(|direction| own_kind(direction))?;
+    let along = &direction.name.text;
+    let listed = |all: &[(Name, Option<Name>)]| {
+        let words: Vec<&str> = all.iter().map(|(word, _)| word.text.as_str()).collect();
+        one_of(&words)
+    };
+    let term = base.link(along, name).and_then(|link| {
+        let mut terms = pattern.terms.iter();
+        terms.find(|term| !has_terms(&link.body, std::slice::from_ref(term)))
+    });
+    let has_role = |role: &str| has_role(roles, pattern.kind, along, name, role);
+    Some(match term {
+        Some(term) => format!("it has no {}", term.text),
+        None if matching(&pattern.roles, has_role).is_none() => {
+            format!("it does not have the role {}", listed(&pattern.roles))
+        }
+        None if matching(&pattern.names, |own| own == name).is_none() => {
+            format!("the effect is only for {}", listed(&pattern.names))
+        }
+        None => "it lacks what the head of the effect requires with `in`, `on` or `given`".into(),
+    })
 }
 
 fn candidates(direction: &Direction, pattern: &Pattern) -> Vec<String> {
@@ -101,14 +146,15 @@ fn matching(all: &[(Name, Option<Name>)], fits: impl Fn(&str) -> bool) -> Option
 fn is_on(base: &ModelTree, roles: &Roles, along: &str, pattern: &Pattern, name: &str) -> bool {
     let Some(wanted) = &pattern.on else { return true };
     let end = base.link(along, name).and_then(|link| upper(base, along, link));
-    let wanted = roles.meant(base, along, &wanted.text).unwrap_or(wanted.text.clone());
+    let meant = roles.meant(base, (along, name), along, &wanted.text);
+    let wanted = meant.unwrap_or(wanted.text.clone());
     end.is_some_and(|end| base.pointed_at(along, &end) == base.pointed_at(along, &wanted))
 }
 
 /// True if the model has what this name means. A pivot that a mass is to have must be a point on that mass.
 fn has(base: &ModelTree, roles: &Roles, (kind, place): (PlaceKind, &Place), name: &str) -> bool {
     let along = &place.direction;
-    match roles.meant(base, along, name) {
+    match roles.meant(base, place.key(), along, name) {
         Some(point) if name == "pivot" && kind == PlaceKind::Mass => base.pointed_at(along, &point) == place.name,
         Some(_) => true,
         None => base.global(name).is_some() || base.declares(along, name),

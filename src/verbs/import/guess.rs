@@ -1,5 +1,7 @@
 //! The sensor of a channel, from the words of its name and its unit.
 
+use std::cmp::Reverse;
+
 use qcar_runtime::campaign::{Axis, Quantity, RoleNames};
 use qcar_runtime::model::{About, State, StateKind};
 use qcar_runtime::roles::Roles;
@@ -153,7 +155,7 @@ impl Guess {
             [0, 0, -2] => Quantity::Acceleration,
             _ => return None,
         };
-        let named = |angle: &&State| words.contains(&angle.location.to_lowercase());
+        let named = |angle: &&State| has_name(words, &angle.location);
         let angle = angles(about).find(named)?;
         Some(Guess {
             location: angle.location.to_string(),
@@ -219,12 +221,20 @@ fn moves_along_axis(state: &State) -> bool {
     state.unit == "m/s"
 }
 
+/// True if a name of the model is among the words, one of its own after the other.
+fn has_name(words: &[String], name: &str) -> bool {
+    let own = self::words(name);
+    words.contains(&name.to_lowercase()) || !own.is_empty() && words.windows(own.len()).any(|part| part == own)
+}
+
 /// A place of the model by its own name or by a common name, and true if it is the road.
 fn location(words: &[String], about: &About) -> Option<(String, bool)> {
     let roads = about.excitations.iter().map(|own| (&own.name, own.road));
     let roads = roads.map(|(name, road)| (&**name, road));
-    let mut known = roads.chain(translating(about).map(|name| (name, false)));
-    if let Some((name, road)) = known.find(|(name, _)| words.contains(&name.to_lowercase())) {
+    let known = roads.chain(translating(about).map(|name| (name, false)));
+    let named = known.filter(|(name, _)| has_name(words, name));
+    // Of `wheel` and `front_wheel`, the longer name says more. The first of several is kept.
+    if let Some((name, road)) = named.min_by_key(|(name, _)| Reverse(self::words(name).len())) {
         return Some((name.to_string(), road));
     }
     let roles = Roles::of(about, &RoleNames::default()).ok()?;

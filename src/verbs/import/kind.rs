@@ -14,6 +14,7 @@ use super::sweep::{SweepParameters, parts, swept};
 use crate::table::number;
 use crate::units;
 use crate::verbs::inspect::{ChannelSummary, Contents};
+use crate::verbs::new::records;
 
 /// Significant digits of proposed values.
 const DIGITS: usize = 6;
@@ -116,8 +117,9 @@ impl PadMotion {
     }
 }
 
-/// The runs of a file: one for each of several sweeps, otherwise one for the whole record.
-pub(super) fn propose(file: &Measured, sensors: &Sensors) -> Vec<Proposed> {
+/// The runs of a file: one for each of several sweeps, otherwise one for the whole record. Only a model on a single road
+/// is swept or rolls over a cleat.
+pub(super) fn propose(file: &Measured, sensors: &Sensors, about: &About) -> Vec<Proposed> {
     let contents = &file.contents;
     let of = |drives: bool| {
         let known = sensors.known.iter().filter(move |sensor| sensor.guess.drives == drives);
@@ -140,6 +142,9 @@ pub(super) fn propose(file: &Measured, sensors: &Sensors) -> Vec<Proposed> {
         timed,
         part,
     };
+    if records::suit(about) {
+        return vec![proposed(curve(contents).unwrap_or(Kind::TimeHistory), None)];
+    }
     let pad = of(true).next();
     let driven = pad.and_then(|(_, driven)| driven.as_ref());
     let parts = driven.map_or(&[][..], |driven| &driven.parts);

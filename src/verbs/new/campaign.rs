@@ -9,14 +9,14 @@ use clap_complete::engine::ArgValueCompleter;
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::model::{About, Default, Parameter, StateKind};
 
-use super::{Named, must_be_new};
+use super::{Named, must_be_new, records};
 use crate::catalogue;
 use crate::completion;
 use crate::failure::Failure;
 use crate::files::put;
 use crate::table::number;
 
-/// Folder for the measured files.
+/// Folders for the measured files of a car on a rig.
 const PARTS: [&str; 4] = ["rig", "kc", "cleat", "road"];
 
 /// Write a folder with a campaign.toml for a model, which says where to put each measured file
@@ -36,19 +36,19 @@ pub(super) fn run(arguments: &Arguments) -> Result<String, Failure> {
     let model = catalogue::load(&arguments.model)?;
     let folder = dir.join(name);
     must_be_new(&folder)?;
+    let about = model.about();
+    let seen = seen_from(&folder, &arguments.model, catalogue::is_shipped(&arguments.model));
+    if records::suit(about) {
+        make(&folder.join(records::FOLDER))?;
+        let text = make_head(name, &seen, about) + &records::sections(about);
+        put(&folder, "campaign.toml", &text)?;
+        return Ok(records::next_steps(&folder.display().to_string(), about));
+    }
     for part in PARTS {
         make(&folder.join(part))?;
     }
-    put(
-        &folder,
-        "campaign.toml",
-        &manifest(
-            name,
-            &seen_from(&folder, &arguments.model, catalogue::is_shipped(&arguments.model)),
-            model.about(),
-        ),
-    )?;
-    let (folder, columns) = (folder.display(), columns(model.about()).join(","));
+    put(&folder, "campaign.toml", &manifest(name, &seen, about))?;
+    let (folder, columns) = (folder.display(), columns(about).join(","));
     Ok(format!(
         "{folder}/campaign.toml written. Now\n\
          1. export the sweeps of the rig to {folder}/rig/sweep_025.csv and sweep_100.csv, with the header line\n     \
@@ -104,17 +104,20 @@ pub(in crate::verbs) fn make_head(name: &str, model: &str, about: &About) -> Str
     let (known, estimated): (Vec<&Parameter>, _) = about
         .parameters
         .iter()
-        .filter(|parameter| !matches!(parameter.default, Default::Same(_)))
+        .filter(|parameter| parameter.clock.is_none() && !matches!(parameter.default, Default::Same(_)))
         .partition(|parameter| parameter.known);
     let mut out = format!(
         "# A campaign of measurements; docs/campaign-format.md describes it. A number without a unit is SI; paths are relative to this \
-         folder.\nformat = 1\nname = {name:?}\ndescription = \"\"\nmodel = {model:?}\n\n\
-         # Values known before any fit.\n[vehicle]\n"
+         folder.\nformat = 1\nname = {name:?}\ndescription = \"\"\nmodel = {model:?}\n"
     );
+    let rolling = if about.contact.is_some() { ROLLING } else { "" };
+    if !known.is_empty() || !rolling.is_empty() {
+        out += "\n# Values known before any fit.\n[vehicle]\n";
+    }
     for parameter in known {
         let _ = writeln!(out, "{}", of_vehicle(parameter));
     }
-    out += ROLLING;
+    out += rolling;
     out += "\n# Start values and ranges. With fit = false a value is kept.\n";
     out.extend(estimated.into_iter().map(of_fit));
     out
@@ -166,46 +169,66 @@ sample_rate = 1000.0
 # file = \"road/cleat_20.csv\"
 ";
 
+/// Significant digits of a guess; a value of the model keeps all that are of use.
+const OF_A_GUESS: usize = 3;
+const OF_A_VALUE: usize = 12;
+
 /// A start value with its description.
-fn guess(of: &Parameter) -> (Option<f64>, &'static str) {
+fn guess(of: &Parameter) -> (Option<String>, &'static str) {
+    let middle = "in the middle of its range, give yours";
+    let guessed = |value: f64| Some(number(value, OF_A_GUESS));
     match (of.default, of.range) {
-        (Default::Value(value), _) => (Some(value), ""),
-        (_, Some((low, high))) if low > 0.0 => (Some((low * high).sqrt()), "; in the middle of its range, give yours"),
-        (_, Some((low, high))) => (Some((low + high) / 2.0), "; in the middle of its range, give yours"),
-        (_, None) => (None, "; give yours"),
+        (Default::Value(value), _) => (Some(number(value, OF_A_VALUE)), ""),
+        (_, Some((low, high))) if low > 0.0 => (guessed((low * high).sqrt()), middle),
+        (_, Some((low, high))) => (guessed((low + high) / 2.0), middle),
+        (_, None) => (None, "give yours"),
     }
 }
 
 /// `key = value`; commented out without a value, so that the campaign is refused until it is given.
-fn line(key: &str, value: Option<f64>) -> String {
-    value.map_or(format!("# {key} ="), |value| format!("{key} = {}", number(value, 3)))
+fn line(key: &str, value: Option<String>) -> String {
+    value.map_or(format!("# {key} ="), |value| format!("{key} = {value}"))
+}
+
+/// A comment at the end of a line: what it describes, and a hint. Empty if there is neither.
+fn comment(what: &[&str], hint: &str) -> String {
+    let parts = |parts: &[&str], between: &str| {
+        let given: Vec<&str> = parts.iter().copied().filter(|part| !part.is_empty()).collect();
+        given.join(between)
+    };
+    match parts(&[&parts(what, ", "), hint], "; ") {
+        text if text.is_empty() => text,
+        text => format!(" # {text}"),
+    }
 }
 
 /// A known parameter gets only the default of the model, because a guess would count as known.
 fn of_vehicle(of: &Parameter) -> String {
     let value = match of.default {
-        Default::Value(value) => Some(value),
+        Default::Value(value) => Some(number(value, OF_A_VALUE)),
         Default::None | Default::Same(_) => None,
     };
     let hint = match value {
-        Some(_) => "; as in the model, give yours",
-        None => "; give yours",
+        Some(_) => "as in the model, give yours",
+        None => "give yours",
     };
-    format!("{} # {}, {}{hint}", line(&of.name, value), of.unit, of.doc)
+    line(&of.name, value) + &comment(&[&of.unit, &of.doc], hint)
 }
 
 fn of_fit(of: &Parameter) -> String {
     let (value, hint) = guess(of);
-    let range = of
-        .range
-        .map(|(low, high)| format!("range = [{}, {}]\n", number(low, 6), number(high, 6)));
+    let fit = match of.range {
+        Some((low, high)) => format!("range = [{}, {}]\nfit = true\n", number(low, 6), number(high, 6)),
+        None => {
+            "# range = [lower, upper] # the model has none; give it and fit = true to estimate it\nfit = false\n".into()
+        }
+    };
     format!(
-        "\n[parameters.{}] # {}{hint}\n{}\nunit = \"{}\"\n{}fit = true\n",
+        "\n[parameters.{}]{}\n{}\nunit = \"{}\"\n{fit}",
         of.name,
-        of.doc,
+        comment(&[&of.doc], hint),
         line("value", value),
         of.unit,
-        range.unwrap_or_default(),
     )
 }
 
