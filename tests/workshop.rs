@@ -109,6 +109,7 @@ fn the_laws_of_a_damper_on_a_rig_are_all_tried() {
                 "progressive_in_compression",
                 "exponential_in_compression",
                 "in_rebound",
+                "progressive_in_rebound",
                 "both_ways",
             ],
         ),

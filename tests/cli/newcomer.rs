@@ -215,13 +215,13 @@ fn a_campaign_of_what_nothing_drives_is_of_free_decays() {
 fn a_campaign_of_two_tyres_has_both_pads() {
     let folder = tempfile::tempdir().unwrap();
     let text = "axle two { \"A beam on two wheels\"
-        known param m: kg = 800; known param j: kg m^2 = 1200; param m_w: kg = 40 in 10..80; param k: N/m = 25e3 in 1e4..8e4;
+        known param m: kg = 800; known param a: m = 1.3; known param j: kg m^2 = 1200; param m_w: kg = 40 in 10..80; param k: N/m = 25e3 in 1e4..8e4;
         param c: N s/m = 1500 in 100..5e3; param kt: N/m = 2e5 in 1e5..4e5;
         direction z {
             road front_pad; road rear_pad; mass body = m; inertia pitch = j; mass front = m_w; mass rear = m_w;
             link front_tire: front - front_pad { spring kt; } link rear_tire: rear - rear_pad { spring kt; }
-            link front_strut: body + 1.3*pitch - front { spring k; damper c; }
-            link rear_strut: body - 1.3*pitch - rear { spring k; damper c; }
+            link front_strut: body + a*pitch - front { spring k; damper c; }
+            link rear_strut: body - a*pitch - rear { spring k; damper c; }
             output body.acceleration; output pitch.acceleration; output front.acceleration; output rear.acceleration;
         } }";
     fs::write(folder.path().join("two.axle"), text).unwrap();
