@@ -388,5 +388,9 @@ fn a_road_that_ends_before_its_run_makes_a_campaign_unfit() {
     .unwrap();
     let checked = qcar(&["check", path]);
     assert_eq!(checked.status, 1, "{}", checked.stdout);
-    assert!(checked.stdout.contains("a road that ends at x = "), "{}", checked.stdout);
+    assert!(
+        checked.stdout.contains("a road that ends at x = "),
+        "{}",
+        checked.stdout
+    );
 }

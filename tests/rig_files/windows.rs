@@ -160,33 +160,40 @@ fn curves_are_read_from_any_file() {
 /// A sine on the K&C rig, its velocity and force at a rate of their own.
 #[test]
 fn sines_of_a_rig_come_to_one_rate() {
-    let signals = |rate: f64, names: [(&str, &str, f64); 2]| {
-        Group::at(
-            rate,
-            names
-                .map(|(name, unit, size)| Channel::new(name, unit, sampled(rate, |t| size * pad(t))))
-                .into(),
-        )
-    };
+    let rate_of_pad = |t: f64| (TAU * 3.0 * t).cos();
+    let peak = 20.0 * TAU * 3.0;
     let file = mdf4::file(&[
-        signals(500.0, [("Weg", "mm", 20.0), ("unused", "V", 1.0)]),
-        signals(250.0, [("Geschwindigkeit", "mm/s", 75.0), ("Kraft", "kN", 0.4)]),
+        Group::at(
+            500.0,
+            vec![
+                Channel::new("Weg", "mm", sampled(500.0, |t| 20.0 * pad(t))),
+                Channel::new("unused", "V", sampled(500.0, pad)),
+            ],
+        ),
+        Group::at(
+            250.0,
+            vec![
+                Channel::new("Geschwindigkeit", "mm/s", sampled(250.0, |t| peak * rate_of_pad(t))),
+                Channel::new("Kraft", "kN", sampled(250.0, |t| 0.4 * pad(t))),
+            ],
+        ),
     ]);
     let columns =
         "displacement = { source = \"Weg\" }\nvelocity = { source = \"Gesch*\" }\nforce = { source = \"Kraft\" }";
-    let run = "[[run]]\nkind = \"dynamic_bounce\"\nfile = \"kc.mf4\"\nrole = \"fit\"\npeak_velocity = 0.075\namplitude = 0.02\n";
+    let run = "[[run]]\nkind = \"dynamic_bounce\"\nfile = \"kc.mf4\"\nrole = \"fit\"\npeak_velocity = 0.377\namplitude = 0.02\n";
     let folder = folder(&format!("{run}{columns}\n"), ("kc.mf4", &file));
     let campaign = open(folder.path()).unwrap();
     let curve = campaign.dynamic_curve(&campaign.runs[0]).unwrap();
     assert_eq!((curve.time.len(), curve.time[1]), (4001, 0.002));
-    for (column, size) in [
-        (&curve.displacement, 0.02),
-        (&curve.velocity, 0.075),
-        (&curve.force, 400.0),
-    ] {
+    let columns: [(&[f64], f64, &dyn Fn(f64) -> f64); 3] = [
+        (&curve.displacement, 0.02, &pad),
+        (&curve.velocity, 1e-3 * peak, &rate_of_pad),
+        (&curve.force, 400.0, &pad),
+    ];
+    for (column, size, shape) in columns {
         let inner = 200..3800;
         let worst = inner
-            .map(|k| (column[k] / size - pad(curve.time[k])).abs())
+            .map(|k| (column[k] / size - shape(curve.time[k])).abs())
             .fold(0.0, f64::max);
         assert!(worst < 2.0 * RIPPLE, "{size}: {worst}");
     }

@@ -9,6 +9,9 @@ use crate::error::{InputError, Place, Problem};
 use crate::proportion::{factor, is_alike};
 use crate::shown::{rounded, shown};
 
+/// Factor between two columns that no confused unit explains: mm and m are a thousand apart.
+const OF_NO_UNIT: f64 = 1e4;
+
 /// A slow cycle: forces relative to the design position; compression is positive in a bounce.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
@@ -126,7 +129,11 @@ impl DynamicCurve {
         let of_rate = rate.map(|factor| {
             problem(
                 "velocity",
-                format!("velocities of {} times the rate of the displacement", rounded(factor, 3)),
+                if factor.abs() < OF_NO_UNIT {
+                    format!("velocities of {} times the rate of the displacement", rounded(factor, 3))
+                } else {
+                    "velocities that do not follow the rate of the displacement".into()
+                },
                 "the rate of the displacement over time".into(),
                 "correct the unit of `time`, `displacement` or `velocity` in the file, such as `velocity [mm/s]`, or a sign",
             )
