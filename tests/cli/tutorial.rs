@@ -46,7 +46,8 @@ fn follow(blocks: &[Block], folder: &Path) {
 }
 
 fn shows_refusal(block: &Block) -> bool {
-    block.kind == "text" && block.text.contains("refused")
+    let is_refusal = |said: &str| block.text.contains(said);
+    block.kind == "text" && ["refused", "cannot be fitted"].into_iter().any(is_refusal)
 }
 
 /// Each line that is shown has been printed.
