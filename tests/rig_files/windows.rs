@@ -185,7 +185,8 @@ fn sines_of_a_rig_come_to_one_rate() {
     let campaign = open(folder.path()).unwrap();
     let curve = campaign.dynamic_curve(&campaign.runs[0]).unwrap();
     assert_eq!((curve.time.len(), curve.time[1]), (4001, 0.002));
-    let columns: [(&[f64], f64, &dyn Fn(f64) -> f64); 3] = [
+    type Shape<'a> = &'a dyn Fn(f64) -> f64;
+    let columns: [(&[f64], f64, Shape); 3] = [
         (&curve.displacement, 0.02, &pad),
         (&curve.velocity, 1e-3 * peak, &rate_of_pad),
         (&curve.force, 400.0, &pad),
