@@ -171,7 +171,8 @@ impl Stimulus {
         }
     }
 
-    /// Number of samples at either end of a record that are not compared: see [`left_out`].
+    /// Number of samples at either end of a record that are not compared: where the band filter reaches beyond the record,
+    /// and the first and last 2 % if inputs are interpolated.
     pub fn cut(&self) -> usize {
         match self {
             Stimulus::History {
