@@ -148,8 +148,8 @@ pub(super) fn line_at(frequency: &[f64], at: f64) -> usize {
 /// there.
 const ENDS: f64 = 0.02;
 
-/// Number of samples at either end of a record that are not compared: where the band filter reaches beyond the record, and
-/// where inputs that are interpolated within their band are inaccurate. None of a periodic record.
+/// Number of samples at either end of a record that are not compared: where the band filter reaches beyond the record,
+/// and where inputs that are interpolated within their band are inaccurate. None of a periodic record.
 pub(super) fn left_out(band: Option<&Band>, is_interpolated: bool, periodic: bool, samples: usize) -> usize {
     if periodic {
         return 0;
@@ -171,8 +171,8 @@ impl Stimulus {
         }
     }
 
-    /// Number of samples at either end of a record that are not compared: where the band filter reaches beyond the record,
-    /// and the first and last 2 % if inputs are interpolated.
+    /// Number of samples at either end of a record that are not compared: where the band filter reaches beyond the
+    /// record, and the first and last 2 % if inputs are interpolated.
     pub fn cut(&self) -> usize {
         match self {
             Stimulus::History {
