@@ -33,8 +33,8 @@ pub(super) const ROAD: &[&str] = &["x", "z"];
 pub(super) const SLOPE: &[&str] = &["slope"];
 
 impl Campaign {
-    /// Opens a campaign: reads `campaign.toml` of `folder` (or that file, if it is given itself), the header line of every plain table that it lists, and the
-    /// runs of all other files.
+    /// Opens a campaign: reads `campaign.toml` of `folder` (or that file, if it is given itself), the header line of every
+    /// plain table that it lists, and the runs of all other files.
     ///
     /// # Errors
     /// Fails with all problems of `campaign.toml`; without any, with all problems of the headers of files; without

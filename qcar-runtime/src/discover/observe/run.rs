@@ -130,10 +130,7 @@ impl Run {
         match &self.stimulus {
             Stimulus::Sweep { .. } | Stimulus::Dynamometer { .. } => "m/s",
             Stimulus::Cleat(_) | Stimulus::Travel { .. } | Stimulus::Sine { .. } => "m",
-            Stimulus::History { inputs, .. } => inputs
-                .signals
-                .first()
-                .map_or("-", |(sensor, _)| sensor.quantity.unit_of(sensor.turns)),
+            Stimulus::History { inputs, .. } => inputs.signals.first().map_or("-", |(sensor, _)| sensor.unit()),
         }
     }
 }
