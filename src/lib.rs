@@ -53,6 +53,8 @@ pub mod scales;
 pub mod workshop;
 // The residual of each sensor, in percent.
 mod sensor_residuals;
+// The shape of a mode, as amplitudes and phases.
+mod mode_shape;
 // Units that the samples of a channel contradict.
 mod suspect_unit;
 // Dense and named matrices.

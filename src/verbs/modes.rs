@@ -5,13 +5,13 @@ use qcar_dsl::response::Wanted;
 use qcar_runtime::free_motions::{FreeMotion, FreeMotions, Kind, free_motions};
 use qcar_runtime::matrices::at_rest;
 use qcar_runtime::model::{About, Model, StateKind};
-use qcar_runtime::modes::Part;
 use qcar_runtime::response::parameters::Values;
 use serde::Serialize;
 
 use crate::catalogue;
 use crate::failure::Failure;
 use crate::json;
+use crate::mode_shape::Moving;
 use crate::parameters;
 use crate::stability::unstable;
 use crate::table::{Table, counted, noted, noted_below, number};
@@ -88,25 +88,8 @@ struct Mode {
     parts: Vec<Moving>,
 }
 
-/// Motion of a point in a mode.
-#[derive(Serialize)]
-struct Moving {
-    point: String,
-    axis: String,
-    /// Relative to the largest.
-    amplitude: f64,
-    /// Degrees.
-    phase: f64,
-}
-
 impl Mode {
     fn of(motion: &FreeMotion, number: Option<usize>) -> Self {
-        let moving = |part: &Part| Moving {
-            point: part.location.clone(),
-            axis: part.axis.clone(),
-            amplitude: part.amplitude.norm(),
-            phase: part.amplitude.arg().to_degrees(),
-        };
         Mode {
             number,
             frequency: motion.frequency,
@@ -117,7 +100,7 @@ impl Mode {
                 Kind::Aperiodic => "aperiodic",
             },
             unstable: motion.is_unstable(),
-            parts: motion.shape.iter().map(moving).collect(),
+            parts: motion.shape.iter().map(Moving::of).collect(),
         }
     }
 

@@ -4,6 +4,7 @@ use qcar_runtime::modes::{Mode, Part, modes};
 use serde::Serialize;
 
 use super::gather::Study;
+use crate::mode_shape::Moving;
 use crate::report::rounded::rounded;
 
 /// Modes before and after.
@@ -23,17 +24,6 @@ pub struct Shape {
     parts: Vec<Moving>,
 }
 
-/// Motion of a point in a mode.
-#[derive(Serialize)]
-struct Moving {
-    point: String,
-    axis: String,
-    /// Amplitude relative to the largest.
-    amplitude: f64,
-    /// Phase, degrees.
-    phase: f64,
-}
-
 /// The modes of both models.
 pub fn shapes(of: &Study) -> Shapes {
     let all = |modes: Vec<Mode>| modes.iter().map(shape).collect();
@@ -45,11 +35,13 @@ pub fn shapes(of: &Study) -> Shapes {
 
 /// A mode for the report.
 pub fn shape(of: &Mode) -> Shape {
-    let moving = |part: &Part| Moving {
-        point: part.location.clone(),
-        axis: part.axis.clone(),
-        amplitude: rounded(part.amplitude.norm()),
-        phase: rounded(part.amplitude.arg().to_degrees()),
+    let moving = |part: &Part| {
+        let own = Moving::of(part);
+        Moving {
+            amplitude: rounded(own.amplitude),
+            phase: rounded(own.phase),
+            ..own
+        }
     };
     Shape {
         frequency: rounded(of.frequency),
