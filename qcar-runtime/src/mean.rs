@@ -35,6 +35,14 @@ pub fn deviation(values: &[f64]) -> f64 {
     rms(values.iter().map(|value| value - mean))
 }
 
+/// Quantile of ascending values, interpolated between neighbours; there must be a value.
+pub fn quantile(ascending: &[f64], share: f64) -> f64 {
+    let place = share * (ascending.len() - 1) as f64;
+    let below = place as usize;
+    let above = (below + 1).min(ascending.len() - 1);
+    ascending[below] + (place - below as f64) * (ascending[above] - ascending[below])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -6,6 +6,7 @@ use super::contents::{Campaign, Run, Test};
 use super::manifest::{CURVE, DYNAMIC_CURVE};
 use super::table::{self, Table};
 use crate::error::{InputError, Place, Problem};
+use crate::mean::quantile;
 use crate::proportion::{factor, is_alike};
 use crate::shown::{rounded, shown};
 
@@ -138,8 +139,9 @@ impl DynamicCurve {
                 "correct the unit of `time`, `displacement` or `velocity` in the file, such as `velocity [mm/s]`, or a sign",
             )
         });
-        let peak = quantile(self.velocity.iter().map(|velocity| velocity.abs()), MOST);
-        let [low, high] = [1.0 - MOST, MOST].map(|share| quantile(self.displacement.iter().copied(), share));
+        let peak = quantile(&ascending(self.velocity.iter().map(|velocity| velocity.abs())), MOST);
+        let travel = ascending(self.displacement.iter().copied());
+        let [low, high] = [1.0 - MOST, MOST].map(|share| quantile(&travel, share));
         let of_peak = of_key(
             ("velocity", "a peak velocity"),
             (peak, peak_velocity),
@@ -166,11 +168,10 @@ impl DynamicCurve {
 /// are above.
 const MOST: f64 = 0.95;
 
-/// The value below which this share of the values lies; there must be a value.
-fn quantile(values: impl Iterator<Item = f64>, share: f64) -> f64 {
+fn ascending(values: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut sorted: Vec<f64> = values.collect();
     sorted.sort_by(f64::total_cmp);
-    sorted[(share * (sorted.len() - 1) as f64).round() as usize]
+    sorted
 }
 
 pub(super) fn other_kind(file: &Path, expected: &str) -> InputError {

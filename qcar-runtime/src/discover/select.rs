@@ -67,8 +67,8 @@ use law_or_names::compare_with_law;
 use ranges::with_ranges_of_model;
 use reduce::reductions;
 use set::{
-    Set, best_base, explained_share, held_out_judge, is_missing, keep_best, leaves_more_than_noise, most_probable,
-    most_probable_first, predicts_worse_than_noise,
+    Set, best_base, explained_share, held_out_judge, is_missing, keep_best, leaves_more_than_noise, misses_a_sensor,
+    most_probable, most_probable_first, predicts_worse_than_noise,
 };
 use verdict::conclude;
 
@@ -262,12 +262,6 @@ fn lacks_nothing(set: &Set, evidence: &Evidence) -> bool {
     evidence.runs.iter().all(is_record) && leaves_noise
 }
 
-/// True if the set misses more of a sensor than any model is expected to, and noise does not explain it.
-fn misses_a_sensor(set: &Set, evidence: &Evidence) -> bool {
-    let shares = set.explanation.misfit.sensor_shares(evidence, evidence.judging());
-    shares.into_iter().any(|share| share.is_large(&evidence.numbers))
-}
-
 /// True if the held-out runs support only a part of the set and this part explains most of the excess residual.
 fn needs_no_further_effect(sets: &[Set], set: usize, evidence: &Evidence) -> bool {
     let answer = supported_part(sets, set, evidence);
@@ -315,7 +309,7 @@ fn may_grow(sets: &[Set], set: usize, evidence: &Evidence) -> bool {
     let own = &sets[set];
     let effects = own.names().len();
     let explains = || explained_share(&sets[best_base(sets)], own, evidence) >= GREATER_PART;
-    let misses = || misses_a_sensor(own, evidence) || own.has_inaccurate_sensors();
+    let misses = || misses_a_sensor(own, evidence, evidence.judging()) || own.has_inaccurate_sensors();
     effects < 2 || effects < MOST_EFFECTS && explains() && misses()
 }
 

@@ -16,7 +16,7 @@ use super::search::OPTIONS;
 use super::setup::Setup;
 use super::uncertainty::{self, Line};
 use crate::least_squares::{Outcome, Problem, minimize};
-use crate::mean::{deviation, mean};
+use crate::mean::{deviation, mean, quantile};
 use crate::model::Model;
 use crate::progress::{self, OnProgress};
 use crate::random::SplitMix;
@@ -97,14 +97,6 @@ impl<M: Model + ?Sized> Setup<'_, M> {
             interval: ENDS.map(|part| quantile(&values, part)),
         }
     }
-}
-
-/// Quantile of ascending values, interpolated between neighbours.
-fn quantile(values: &[f64], part: f64) -> f64 {
-    let place = part * (values.len() - 1) as f64;
-    let below = place as usize;
-    let above = (below + 1).min(values.len() - 1);
-    values[below] + (place - below as f64) * (values[above] - values[below])
 }
 
 /// Causes from which residuals at the minimum are drawn.

@@ -28,14 +28,13 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
             // If the part leaves no more than noise, there is nothing to explain.
             let is_enough = || excess(&part.with_sensors_of(set, evidence), evidence) <= 0.0;
             let explains_little = || is_enough() || explained_share(part, set, evidence) < evidence.numbers.explained();
-            let changes_little = !part.names().is_empty() && explains_little();
-            let fails = if held_out_judge(part, evidence) {
-                changes_little || !predicts_better(part)
-            } else {
-                predicts_certainly_worse(set, part, evidence)
+            let changes_little = || !part.names().is_empty() && explains_little();
+            let fails = || match held_out_judge(part, evidence) {
+                true => changes_little() || !predicts_better(part),
+                false => predicts_certainly_worse(set, part, evidence),
             };
             let explains = || excess(&part.explanation, evidence) <= unexplained;
-            is_judged && fails
+            is_judged && fails()
                 || set.adds_effect_at_bound(part, evidence)
                 || set.adds_undetermined_effect(part) && explains()
                 || rests_on_passages(set, part, evidence)

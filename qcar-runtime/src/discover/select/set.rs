@@ -413,9 +413,10 @@ pub fn predicts_worse_than_noise(set: &Set, evidence: &Evidence) -> bool {
     is_any && is_more_than_noise(set.explanation.misfit.held_out, Role::HeldOut, evidence)
 }
 
-/// True if something is missing that only the held-out runs show: the residual of some sensor is large there.
-pub fn misses_held_out(set: &Set, evidence: &Evidence) -> bool {
-    let shares = set.explanation.misfit.sensor_shares(evidence, Role::HeldOut);
+/// True if the set misses more of some sensor than any model is expected to, in the runs of a role, and noise does not
+/// explain it.
+pub fn misses_a_sensor(set: &Set, evidence: &Evidence, role: Role) -> bool {
+    let shares = set.explanation.misfit.sensor_shares(evidence, role);
     shares.iter().any(|share| share.is_large(&evidence.numbers))
 }
 
@@ -448,7 +449,7 @@ pub fn stated_share(before: &Set, after: &Set, evidence: &Evidence) -> Option<f6
 pub fn held_out_judge(set: &Set, evidence: &Evidence) -> bool {
     let misfit = &set.explanation.misfit;
     let is_negligible = above_noise(misfit.held_out) < evidence.numbers.error_probability * above_noise(misfit.fit);
-    !is_negligible || !has_large_discrepancy(set, evidence) || misses_held_out(set, evidence)
+    !is_negligible || !has_large_discrepancy(set, evidence) || misses_a_sensor(set, evidence, Role::HeldOut)
 }
 
 /// Excess residual of the runs that judge a model: see [`above_noise`].

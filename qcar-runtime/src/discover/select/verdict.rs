@@ -3,8 +3,9 @@
 use super::answers::{Answer, answers, credible};
 use super::assembly::Placed;
 use super::set::{
-    Set, best_base, by_log_posterior, explained_share, is_missing, is_part, misses_held_out, stated_share,
+    Set, best_base, by_log_posterior, explained_share, is_missing, is_part, misses_a_sensor, stated_share,
 };
+use crate::campaign::Role;
 use crate::discover::answer::{Discovery, Finding, Probable, Rival, Verdict};
 use crate::discover::numbers::GREATER_PART;
 use crate::discover::observe::Evidence;
@@ -22,7 +23,7 @@ pub fn conclude(sets: &[Set], evidence: &Evidence) -> (Discovery, usize) {
     let finding = |set: &Set, own: &Placed| finding(set, own, before, evidence);
     let (findings, alternatives) = findings(&members.iter().map(|&place| &sets[place]).collect::<Vec<_>>(), &finding);
     let of_none = total(&answers, |own| sets[own.set].names().is_empty());
-    let is_incomplete = is_missing(&sets[best], evidence) || misses_held_out(&sets[best], evidence);
+    let is_incomplete = is_missing(&sets[best], evidence) || misses_a_sensor(&sets[best], evidence, Role::HeldOut);
     let verdict = match (findings.is_empty(), alternatives) {
         (true, _) if is_incomplete || of_none < evidence.numbers.error_probability => Verdict::Unknown,
         (true, _) => Verdict::None,
