@@ -171,6 +171,12 @@ const TRUTH: [(&str, f64, &str); 3] = [
     ("k_body", 800.0, "N/m"),
 ];
 
+/// The true mass, whose parameters no fit changes.
+fn all_known() -> String {
+    let stated = TRUTH.map(|(name, value, unit)| parameter(name, value, unit, ""));
+    stated.concat().replace("true", "false")
+}
+
 /// A campaign of a mass that starts in motion, which transmissibilities take for a response to the force.
 fn moving_campaign(folder: &Path) {
     let start = |(name, value, unit): &(&str, f64, &str)| parameter(name, 0.8 * value, unit, "");
@@ -659,13 +665,7 @@ fn an_offset_is_told_and_counted_once() {
 fn records_are_replayed_and_what_is_left_is_told() {
     let folder = tempfile::tempdir().unwrap();
     let (path, out) = (folder.path().to_str().unwrap(), folder.path().join("out"));
-    let known = [
-        ("m_body", 2.0, "kg"),
-        ("c_body", 3.0, "N s/m"),
-        ("k_body", 800.0, "N/m"),
-    ];
-    let known = known.map(|(name, value, unit)| parameter(name, value, unit, ""));
-    let parameters = known.concat().replace("true", "false");
+    let parameters = all_known();
     let moving: Vec<(&str, Vec<f64>)> = vec![pushed().remove(0), ("z", mass([0.02, 0.2], push))];
     campaign(
         folder.path(),
@@ -719,13 +719,7 @@ fn records_are_replayed_and_what_is_left_is_told() {
 fn the_ends_of_a_band_limited_record_are_not_compared() {
     let folder = tempfile::tempdir().unwrap();
     let (path, out) = (folder.path().to_str().unwrap(), folder.path().join("out"));
-    let known = [
-        ("m_body", 2.0, "kg"),
-        ("c_body", 3.0, "N s/m"),
-        ("k_body", 800.0, "N/m"),
-    ];
-    let parameters = known.map(|(name, value, unit)| parameter(name, value, unit, ""));
-    let parameters = parameters.concat().replace("true", "false");
+    let parameters = all_known();
     let tone = |t: f64| (std::f64::consts::TAU * 3.0 * t).cos() + (std::f64::consts::TAU * 17.0 * t).cos();
     let force: Vec<f64> = (0..SAMPLES).map(|k| tone(k as f64 / RATE)).collect();
     let z = mass_for(3 * SAMPLES, [0.0, 0.0], tone)[2 * SAMPLES..].to_vec();
@@ -750,13 +744,7 @@ fn the_ends_of_a_band_limited_record_are_not_compared() {
 fn a_band_and_a_steady_state_are_compared_as_the_campaign_says() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().to_str().unwrap();
-    let known = [
-        ("m_body", 2.0, "kg"),
-        ("c_body", 3.0, "N s/m"),
-        ("k_body", 800.0, "N/m"),
-    ];
-    let parameters = known.map(|(name, value, unit)| parameter(name, value, unit, ""));
-    let parameters = parameters.concat().replace("true", "false");
+    let parameters = all_known();
     let tone = |t: f64| (std::f64::consts::TAU * 2.0 * t).sin() + (std::f64::consts::TAU * 4.0 * t).cos();
     let held = |t: f64| tone((t * RATE).floor() / RATE);
     let force: Vec<f64> = (0..SAMPLES).map(|k| tone(k as f64 / RATE)).collect();
