@@ -55,7 +55,9 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         .apply(&compiled.model, &arguments.at, &|name| values.get(name).copied())
         .map_err(|report| Failure::Input(report.to_string()))?;
     let text = patched.text(NO_EVIDENCE);
-    let notes = noted(&parameters::stated_out_of_range(&compiled.about, &values));
+    let mut notes = parameters::stated_out_of_range(&compiled.about, &values);
+    notes.extend(patched.note_on_sensors().map(String::from));
+    let notes = noted(&notes);
     let Some(path) = &arguments.out else {
         aside(&notes);
         return Ok(text);

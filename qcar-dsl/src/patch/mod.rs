@@ -413,9 +413,17 @@ impl Patch {
 }
 
 impl Patched {
+    /// Says of an error of a sensor that the equations of motion do not contain it; `None` for any other effect.
+    pub fn note_on_sensors(&self) -> Option<&'static str> {
+        let note = "an error of a sensor changes what is measured, not the equations of motion: correct the channel in \
+                    the campaign";
+        (!self.signals.is_empty()).then_some(note)
+    }
+
     /// The model file with comments about the effect, and one comment line for each line of `evidence`.
     pub fn text(&self, evidence: &str) -> String {
         let comments = self.comments.iter().map(String::as_str).chain(evidence.lines());
+        let comments = comments.chain(self.note_on_sensors());
         let comments: String = comments.map(|line| format!("// {line}\n")).collect();
         format!("{comments}{}", self.model.text())
     }
