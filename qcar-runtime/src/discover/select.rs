@@ -101,6 +101,9 @@ pub fn discover(
     let workshop: Arc<dyn Workshop> = Arc::from(workshop);
     let fitted = |evidence: &Evidence| fit_base(Assembly::base(workshop.clone(), setting, evidence)?, evidence);
     let mut base = fitted(evidence)?;
+    if evidence.allow_for_starts(base.assembly.model(), &base.explanation.refit.values)? {
+        base = base.fitted_to(evidence).ok_or(PredictError::NoNumber)?;
+    }
     let mut quieter = Quieter::of(evidence);
     if let Some(own) = quieter.take() {
         let other = fitted(&own.evidence)?;

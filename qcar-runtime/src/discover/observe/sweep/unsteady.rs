@@ -68,34 +68,84 @@ fn of_run(
     let Some(driven) = Driven::of(model, evidence, run, drive)? else {
         return Ok(Vec::new());
     };
-    let about = model.about();
-    let steady = if about.linear {
+    let steady = if model.about().linear {
         linear(model, values, &[], evidence, run)?
     } else {
         nonlinear(model, values, drive, &[], evidence, run)?
     };
-    let sensors = steady
-        .iter()
-        .map(|p| signal_of(about, &evidence.series[p.series].sensor));
-    let sensors: Vec<Signal> = sensors.collect();
-    // A sensor has one series for each harmonic, all read from the same signal.
-    let distinct = without_duplicates(&sensors);
-    let shown = if about.linear {
-        driven.by_frequency_response(model, values, &distinct)?
+    let series: Vec<usize> = steady.iter().map(|own| own.series).collect();
+    let shown = if model.about().linear {
+        driven.harmonics(model, evidence, &series, |sensors| {
+            driven.by_frequency_response(model, values, sensors)
+        })?
     } else {
-        driven.by_time_integration(model, values, &distinct)?
+        driven.harmonics(model, evidence, &series, |sensors| {
+            driven.by_time_integration(model, values, sensors)
+        })?
     };
-    let spectra: Vec<_> = shown.par_iter().map(|signal| transform(signal)).collect();
-    let differences = steady.into_par_iter().zip(&sensors).map(|(steady, sensor)| {
-        let place = distinct.iter().position(|other| other == sensor).unwrap_or(0);
-        let unsteady = harmonics(driven.swept, &spectra[place], &evidence.series[steady.series]);
-        let differences = unsteady
-            .iter()
-            .zip(&steady.value)
-            .map(|(unsteady, steady)| unsteady / drive - steady);
+    let differences = steady.into_par_iter().zip(shown).map(|(steady, shown)| {
+        let pairs = shown.iter().zip(&steady.value);
+        let differences = pairs.map(|(shown, steady)| shown / drive - steady);
         (steady.series, differences.collect())
     });
     Ok(differences.collect())
+}
+
+impl Evidence {
+    /// Adds to the uncertainty of each harmonic of the sweeps how much it depends on the motion before the record, which
+    /// is not known. This is the difference between two assumptions in a linear model: that the pad was at rest before
+    /// the record, and that the axle was at rest where the record begins. Returns false, and changes nothing, if the
+    /// difference is below the uncertainty everywhere, or if the model is nonlinear.
+    ///
+    /// # Errors
+    /// Fails if the model lacks a measured quantity.
+    pub fn allow_for_starts(&mut self, model: &dyn Model, values: &Values) -> Result<bool, PredictError> {
+        if !model.about().linear {
+            return Ok(false);
+        }
+        let evidence = &*self;
+        let of_runs = (0..evidence.runs.len()).into_par_iter();
+        let of_runs = of_runs.map(|run| by_start(model, values, evidence, run));
+        let differences = of_runs.collect::<Result<Vec<_>, _>>()?.concat();
+        let is_above_sigma = |(series, by): &(usize, Vec<f64>)| {
+            let sigma = &evidence.series[*series].sigma;
+            by.iter().zip(sigma).any(|(by, sigma)| by > sigma)
+        };
+        if !differences.iter().any(is_above_sigma) {
+            return Ok(false);
+        }
+        for (series, by) in differences {
+            let Series { sigma, noise, .. } = &mut self.series[series];
+            for own in [sigma, noise] {
+                own.iter_mut().zip(&by).for_each(|(own, by)| *own = own.hypot(*by));
+            }
+        }
+        Ok(true)
+    }
+}
+
+/// How much each harmonic of a sweep depends on the motion before it, by positions of series.
+fn by_start(
+    model: &dyn Model,
+    values: &Values,
+    evidence: &Evidence,
+    run: usize,
+) -> Result<Vec<(usize, Vec<f64>)>, PredictError> {
+    let Some(driven) = Driven::of(model, evidence, run, 1.0)? else {
+        return Ok(Vec::new());
+    };
+    let of_run = |&series: &usize| evidence.series[series].run == run;
+    let series: Vec<usize> = (0..evidence.series.len()).filter(of_run).collect();
+    let pad_at_rest = driven.harmonics(model, evidence, &series, |sensors| {
+        driven.by_frequency_response(model, values, sensors)
+    })?;
+    let axle_at_rest = driven.harmonics(model, evidence, &series, |sensors| {
+        driven.by_time_integration(model, values, sensors)
+    })?;
+    let pairs = pad_at_rest.iter().zip(&axle_at_rest);
+    let differences =
+        pairs.map(|(one, other)| one.iter().zip(other).map(|(one, other)| (one - other).norm()).collect());
+    Ok(series.into_iter().zip(differences).collect())
 }
 
 /// The signals without duplicates, in order of first use.
@@ -167,7 +217,31 @@ impl<'a> Driven<'a> {
         }))
     }
 
-    /// Sensor signals of a nonlinear model, by time integration.
+    /// Harmonics of these series, as the estimator of the measurement reads them from the signals that `simulate` gives
+    /// for some sensors.
+    fn harmonics(
+        &self,
+        model: &dyn Model,
+        evidence: &Evidence,
+        series: &[usize],
+        simulate: impl Fn(&[Signal]) -> Result<Vec<Vec<f64>>, SignalError>,
+    ) -> Result<Vec<Vec<Complex<f64>>>, SignalError> {
+        let sensor = |&series: &usize| signal_of(model.about(), &evidence.series[series].sensor);
+        let sensors: Vec<Signal> = series.iter().map(sensor).collect();
+        // A sensor has one series for each harmonic, all read from the same signal.
+        let distinct = without_duplicates(&sensors);
+        let spectra: Vec<_> = simulate(&distinct)?
+            .par_iter()
+            .map(|signal| transform(signal))
+            .collect();
+        let harmonics = series.par_iter().zip(&sensors).map(|(&series, sensor)| {
+            let place = distinct.iter().position(|other| other == sensor).unwrap_or(0);
+            harmonics(self.swept, &spectra[place], &evidence.series[series])
+        });
+        Ok(harmonics.collect())
+    }
+
+    /// Sensor signals by time integration, from the axle at rest.
     fn by_time_integration(
         &self,
         model: &dyn Model,
@@ -194,7 +268,7 @@ impl<'a> Driven<'a> {
             .signals)
     }
 
-    /// Sensor signals of a linear model, by its frequency response. The record is padded with zeros, since ringing
+    /// Sensor signals of a linear model by its frequency response, from the pad at rest. The record is padded with zeros, since ringing
     /// after its end would otherwise wrap around to its beginning. The mean of the record is removed first.
     fn by_frequency_response(
         &self,
