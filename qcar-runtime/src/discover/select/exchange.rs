@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::assembly::{Assembly, Place, Placed};
 use super::fidelity::Fidelity;
 use super::finite_explanation;
-use super::race::FINE_BUDGET;
+use super::race::{FINE_BUDGET, may_catch_up};
 use super::set::Set;
 use crate::discover::observe::Evidence;
 
@@ -34,8 +34,8 @@ pub fn exchanges(set: &Set, sets: &[Set], evidence: &Evidence) -> Vec<Set> {
 }
 
 /// Fitted sets in which one named effect has another form. The best form alone need not be the best beside others, and the
-/// optimum of one form is a good start for another: a stop that stiffens, from one that does not.
-/// The first of `sets` is the base model.
+/// optimum of one form is a good start for another: a stop that stiffens, from one that does not. A form that cannot
+/// catch up with the present one on a part of the data is not fitted to all of it. The first of `sets` is the base model.
 pub fn other_forms(set: &Set, sets: &[Set], evidence: &Evidence) -> Vec<Set> {
     let base = &sets[0].assembly;
     let effects = set.assembly.effects();
@@ -50,13 +50,24 @@ pub fn other_forms(set: &Set, sets: &[Set], evidence: &Evidence) -> Vec<Set> {
             })
         })
         .collect();
+    let from = set.assembly.hypothesis().place(&set.explanation.refit);
+    let steady = evidence.minus(&set.explanation.refit.unsteady).with_step_limit();
+    let medium = Fidelity::of(&steady).medium;
+    let Some(present) = set.again(&medium) else {
+        return Vec::new();
+    };
     let fitted = changed.par_iter().filter_map(|effects| {
         let effects: Vec<&Placed> = effects.iter().collect();
         if sets.iter().any(|known| has_all(known, &effects)) {
             return None;
         }
         let assembly = base.with_all(&effects)?;
-        let from = set.assembly.hypothesis().place(&set.explanation.refit);
+        let hypothesis = assembly.hypothesis();
+        let refit = hypothesis.fit(&from, &medium, FINE_BUDGET).ok()?;
+        if !may_catch_up(&refit, present) {
+            return None;
+        }
+        let from = hypothesis.place(&refit);
         refitted(assembly, &from, set, set.log_prior, evidence)
     });
     fitted.collect()
