@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use qcar_runtime::campaign::Role;
 use qcar_runtime::discover::answer::{Finding, Rival};
 
 use crate::table::{Table, number, or_dash};
@@ -25,17 +26,29 @@ pub(super) fn table(finding: &Finding, of: &BTreeMap<String, String>) -> String 
     table.text()
 }
 
-/// Share of the residual that something explains, in words that follow its name.
-pub(super) fn share(explained: Option<f64>) -> String {
+/// Share of the residual of the judging runs that something explains, in words that follow its name.
+pub(super) fn share(explained: Option<f64>, judging: Role) -> String {
     match explained {
-        Some(share) => format!("explains {:.1} % of the residual", 100.0 * share),
+        Some(share) => format!("explains {:.1} % of the residual of the {}", 100.0 * share, runs_of(judging)),
         None => "has nothing to explain: the judging runs leave no residual above noise".into(),
+    }
+}
+
+fn runs_of(role: Role) -> &'static str {
+    match role {
+        Role::Fit => "fitted runs",
+        Role::HeldOut => "held-out runs",
     }
 }
 
 /// Place, share of the residual and parameters. `among` is the number of findings of the same answer, which
 /// explain that share together.
-pub(super) fn described(finding: &Finding, among: usize, of: &BTreeMap<String, String>) -> String {
+pub(super) fn described(
+    finding: &Finding,
+    among: usize,
+    judging: Role,
+    of: &BTreeMap<String, String>,
+) -> String {
     let others = match among {
         0 | 1 => "",
         2 => ", with the other effect,",
@@ -49,7 +62,7 @@ pub(super) fn described(finding: &Finding, among: usize, of: &BTreeMap<String, S
         "{} at {}{form}{others} {}\n{}",
         finding.effect,
         finding.at,
-        share(finding.explained),
+        share(finding.explained, judging),
         table(finding, of)
     );
     out += &undetermined(finding);
@@ -111,7 +124,7 @@ mod tests {
             explained: None,
             rivals: Vec::new(),
         };
-        let text = described(&finding, 1, &BTreeMap::new());
+        let text = described(&finding, 1, Role::HeldOut, &BTreeMap::new());
         assert!(
             text.starts_with("suspended_mass at body has nothing to explain"),
             "{text}"

@@ -78,11 +78,11 @@ pub(super) fn text(of: &Answer) -> String {
         } else {
             format!("laws {}", places.join(" and "))
         },
-        share(own.explained)
+        share(own.explained, of.evidence.judging())
     );
     for (finding, law) in own.laws.iter().zip(&model.laws) {
         let _ = writeln!(out, "\n{} at {}: {}", finding.effect, finding.at, law.words);
-        out += &described(finding, own.laws.len(), &law.units);
+        out += &described(finding, own.laws.len(), of.evidence.judging(), &law.units);
         if let Some(file) = &law.file {
             let _ = writeln!(out, "effect file: {}", file.display());
         }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use qcar_runtime::discover::answer::{DetectionLimit, Finding, Probable, Rival, Verdict};
 use qcar_runtime::discover::observe::Kind;
-use qcar_runtime::discover::posterior::Tile;
+use qcar_runtime::discover::posterior::{Misfit, Tile};
 use qcar_runtime::mean::rms_or_nan;
 use qcar_runtime::transmissibility::Point;
 use serde::Serialize;
@@ -36,6 +36,7 @@ pub(crate) struct Result<'a> {
     /// Nuisance effects that were fitted with the findings.
     nuisances: Vec<Nuisance<'a>>,
     r#where: Vec<ResidualPart>,
+    remains: Vec<ResidualPart>,
     places: Vec<PlaceStiffness>,
     visible: Vec<Limit<'a>>,
     learned: Option<learned::Learned<'a>>,
@@ -85,6 +86,8 @@ struct Evidence {
 #[derive(Serialize)]
 struct ResidualPart {
     channel: String,
+    /// Its file.
+    run: String,
     harmonic: Option<usize>,
     band_hz: Option<(f64, f64)>,
     /// For values over time.
@@ -128,7 +131,8 @@ pub(crate) fn result(of: &Answer) -> Result<'_> {
             .map(|(place, own)| effect(of, place, own))
             .collect(),
         nuisances: nuisances::json(of),
-        r#where: before.tiles.iter().take(LISTED).map(place).collect(),
+        r#where: parts(before, of),
+        remains: parts(after, of),
         places: missing(of),
         visible: of.detection_limits().map(limit).collect(),
         learned: learned::learned(of),
@@ -188,9 +192,16 @@ fn limit(of: &DetectionLimit) -> Limit<'_> {
     }
 }
 
-fn place(tile: &Tile) -> ResidualPart {
+/// The largest parts of a residual.
+fn parts(misfit: &Misfit, of: &Answer) -> Vec<ResidualPart> {
+    let largest = misfit.tiles.iter().take(LISTED);
+    largest.map(|tile| part(tile, &of.evidence.runs[tile.run].name)).collect()
+}
+
+fn part(tile: &Tile, run: &str) -> ResidualPart {
     ResidualPart {
         channel: channel(&tile.sensor),
+        run: run.into(),
         harmonic: tile.kind.order(),
         band_hz: tile.kind.order().map(|_| tile.span),
         window_s: matches!(tile.kind, Kind::Time | Kind::Passage).then_some(tile.span),

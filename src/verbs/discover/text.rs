@@ -5,7 +5,7 @@ use std::fmt::Write;
 use qcar_runtime::discover::answer::Verdict;
 use qcar_runtime::discover::numbers::LARGE;
 use qcar_runtime::discover::observe::Kind;
-use qcar_runtime::discover::posterior::Explanation;
+use qcar_runtime::discover::posterior::{Explanation, Misfit};
 
 use super::Answer;
 use super::finding::{described, rivals};
@@ -40,7 +40,7 @@ pub(super) fn text(of: &Answer) -> String {
     let certain = of.discovery.certain_and_alternatives().0.len();
     for (place, (finding, units)) in of.discovery.findings.iter().zip(&of.units).enumerate() {
         let among = if place < certain { certain } else { certain + 1 };
-        out += &format!("\n{}{}", choice(of, place), described(finding, among, units));
+        out += &format!("\n{}{}", choice(of, place), described(finding, among, of.evidence.judging(), units));
         // Effects of one set have the same rivals.
         let next = of.discovery.findings.get(place + 1);
         if next.is_none_or(|next| next.rivals != finding.rivals) {
@@ -56,7 +56,10 @@ pub(super) fn text(of: &Answer) -> String {
         out += &format!("\nzero offsets of the sensors of records\n{offsets}");
     }
     if of.discovery.verdict != Verdict::None {
-        out += &format!("\nlargest residuals of the campaign's model\n{}", tiles(of));
+        out += &format!("\nlargest residuals of the campaign's model\n{}", tiles(of, before));
+    }
+    if of.discovery.verdict == Verdict::Found || of.discovery.learned.is_some() {
+        out += &format!("\nlargest residuals that remain\n{}", tiles(of, after));
     }
     if of.discovery.verdict == Verdict::Unknown {
         out += &missing(of).first().map_or_else(String::new, PlaceStiffness::sentence);
@@ -172,28 +175,20 @@ fn unit_of_span(kind: Kind) -> &'static str {
     }
 }
 
-fn tiles(of: &Answer) -> String {
-    let mut table = Table::new([
-        "channel",
-        "harmonic",
-        "from",
-        "to",
-        "unit",
-        "level",
-        "level_unit",
-        "times_the_uncertainty",
-    ]);
-    for tile in of.discovery.before.misfit.tiles.iter().take(8) {
+/// Number of listed parts of a residual.
+const LISTED: usize = 5;
+
+fn tiles(of: &Answer, misfit: &Misfit) -> String {
+    let mut table = Table::new(["channel", "run", "harmonic", "from", "to", "unit", "times_the_uncertainty"]);
+    for tile in misfit.tiles.iter().take(LISTED) {
         let unit = unit_of_span(tile.kind);
-        let level = of.evidence.runs[tile.run].unit_of_level();
         table.row(vec![
             channel(&tile.sensor),
+            of.evidence.runs[tile.run].name.clone(),
             tile.kind.order().map_or("-".into(), |order| order.to_string()),
             number(units::value(tile.span.0, unit), 3),
             number(units::value(tile.span.1, unit), 3),
             units::name(unit).into(),
-            number(units::value(tile.level, level), 3),
-            units::name(level).into(),
             number(tile.strength, 3),
         ]);
     }

@@ -124,17 +124,6 @@ pub struct Recordings {
     pub signals: Vec<(Point, Vec<f64>)>,
 }
 
-impl Run {
-    /// The SI unit of its level; `-` for a record without inputs.
-    pub fn unit_of_level(&self) -> &'static str {
-        match &self.stimulus {
-            Stimulus::Sweep { .. } | Stimulus::Dynamometer { .. } => "m/s",
-            Stimulus::Cleat(_) | Stimulus::Travel { .. } | Stimulus::Sine { .. } => "m",
-            Stimulus::History { inputs, .. } => inputs.signals.first().map_or("-", |(sensor, _)| sensor.unit()),
-        }
-    }
-}
-
 /// Position of a value at `at` (Hz) among the frequencies of its sweep.
 pub(super) fn line_at(frequency: &[f64], at: f64) -> usize {
     let line = frequency.iter().position(|own| *own == at);
