@@ -54,6 +54,7 @@ pub(super) fn take_over(fitted: &mut Fitted, found: Nonlinear) {
     fit.all_correlations = correlations;
     (fit.stopped, fit.stopped_because) = (stop, stop.sentence());
     (fit.converged, fit.starts) = (stop.converged(), starts);
+    fitted.other_minima = Some(found.found.others.len());
     fit.minima.clear();
     fit.parameters = found.parameters;
     fitted.profiles = found.profiles;
