@@ -342,7 +342,7 @@ fn text(of: &[Gradient]) -> String {
     }
     let is_wide = of.iter().any(|gradient| gradient.quantity == "half_width");
     let loops = if is_wide { HALF_WIDTH } else { "" };
-    table.text() + loops + &notes(of)
+    table.text() + &notes(of) + loops
 }
 
 /// What the half width of a loop contains.
