@@ -183,8 +183,8 @@ pub struct Fitted {
     pub profiles: Vec<ParameterProfile>,
     /// Results of fits to resamples; `None` if they were not requested.
     pub bootstrap: Option<Bootstrap>,
-    /// Number of other minima of a fit to all runs as they are; `None` for one to transmissibilities, which lists its
-    /// minima itself.
+    /// Number of other minima of a fit to all runs as they are; `None` without a search, and for a fit to
+    /// transmissibilities, which lists its minima itself.
     pub other_minima: Option<usize>,
     /// Duration of reading, estimating and fitting, s.
     pub seconds: f64,

@@ -53,7 +53,7 @@ function parameters({ fit, refitted, correlations: pairs, other_minima: otherMin
 // has a cost.
 function searched({ minima, starts, cost, start_cost: before }, others) {
   const count = `${starts} ${starts === 1 ? 'start' : 'starts'}`;
-  if (others !== null) return ` ${count} found ${others || 'no'} other ${others === 1 ? 'minimum' : 'minima'}.`;
+  if (others !== null) return ` ${count} found ${others || 'no'} other ${others > 1 ? 'minima' : 'minimum'}.`;
   if (!minima.length) return '';
   return ` ${minima[0].starts} of ${count} found this minimum, cost ${number(cost)} (${number(before)} at the start values).`;
 }
