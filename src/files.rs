@@ -86,6 +86,28 @@ pub fn put(folder: &Path, name: &str, content: &(impl AsRef<[u8]> + ?Sized)) -> 
     }
 }
 
+/// Writes files and folders that are new. If that fails, removes what was begun, so that the same command can be
+/// repeated.
+///
+/// # Errors
+/// Fails as `write` does.
+pub fn write_new<T, E>(paths: &[&Path], write: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
+    let result = write();
+    if result.is_err() {
+        let mut written = close();
+        for path in paths {
+            // Whatever cannot be removed is named by the error when the command is repeated.
+            let _ = if path.is_dir() {
+                fs::remove_dir_all(path)
+            } else {
+                fs::remove_file(path)
+            };
+            written.retain(|own| !own.starts_with(path));
+        }
+    }
+    result
+}
+
 /// Gives a complete file its final name.
 ///
 /// # Errors
@@ -109,4 +131,31 @@ pub fn finish(unfinished: &Path, path: &Path) -> Result<(), InputError> {
 /// Waits for the file that is being written. While the guard is held, no other file is started.
 pub fn close() -> MutexGuard<'static, Vec<PathBuf>> {
     WRITTEN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+    use std::path::Path;
+
+    use super::{put, write_new};
+
+    /// The second file cannot be written, because a folder has its name.
+    #[test]
+    fn what_was_begun_is_removed_if_the_rest_fails() {
+        let place = tempfile::tempdir().expect("a folder");
+        let [first, folder] = ["first", "folder"].map(|name| place.path().join(name));
+        let occupied = place.path().join("second");
+        fs::create_dir(&occupied).expect("a folder");
+        let write = || {
+            put(place.path(), "first", "1")?;
+            put(&folder, "inside", "2")?;
+            put(place.path(), "second", "3")
+        };
+        assert!(write_new(&[&first, &folder], write).is_err());
+        let left = fs::read_dir(place.path()).expect("it is there");
+        let left: Vec<_> = left.map(|entry| entry.expect("it is there").path()).collect();
+        assert_eq!(left, [occupied]);
+        assert!(write_new::<(), ()>(&[Path::new("nowhere")], || Err(())).is_err());
+    }
 }

@@ -16,13 +16,21 @@ pub(crate) struct Moving {
     pub phase: f64,
 }
 
+/// Phases nearer to 0 or 180 degrees than this differ from it by the errors of an eigenvector.
+const ROUNDED: f64 = 1e-6;
+
 impl Moving {
     pub(crate) fn of(part: &Part) -> Self {
+        let phase = part.amplitude.arg().to_degrees();
         Moving {
             point: part.location.clone(),
             axis: part.axis.clone(),
             amplitude: part.amplitude.norm(),
-            phase: part.amplitude.arg().to_degrees(),
+            phase: match phase.abs() {
+                size if size < ROUNDED => 0.0,
+                size if size > 180.0 - ROUNDED => 180.0,
+                _ => phase,
+            },
         }
     }
 }

@@ -4,10 +4,12 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use qcar_runtime::campaign::{Declared, RoadSamples};
+use qcar_runtime::campaign::{Declared, RoadSamples, RoleNames};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::metric::{Course, SEED};
+use qcar_runtime::model::About;
 use qcar_runtime::road::{Class, Road, RoadError};
+use qcar_runtime::roles::Roles;
 use qcar_runtime::shown::shown;
 
 use crate::failure::flag;
@@ -32,6 +34,18 @@ enum Ground {
     Random(Class, u64),
     /// A file and the name of its channel of heights.
     Measured(PathBuf, Option<String>),
+}
+
+/// Checks that a model rolls over roads, for the `option` or subject that asks for it.
+///
+/// # Errors
+/// Fails if the model has no tyre or several, or if a role is that of no mass.
+pub fn check_rolls(about: &About, named: &RoleNames, option: &str) -> Result<(), InputError> {
+    let rolls = Roles::of(about, named).map(drop);
+    rolls.map_err(|error| {
+        let remedy = "leave the road out, or name another model";
+        flag(option, error, "a model that stands on one road", remedy).into()
+    })
 }
 
 /// The expected form, for messages.

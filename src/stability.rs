@@ -16,7 +16,7 @@ pub fn unstable(model: &dyn Model, values: &Values) -> Option<String> {
     };
     Some(format!(
         "model {} is unstable at these values: it has the eigenvalue {}{oscillation} 1/s, so a motion grows until the \
-         model no longer holds; check the signs of its stiffnesses and dampings",
+         model no longer holds; check the signs of its stiffnesses and dampings, and the gains and delays of active links",
         model.about().name,
         number(root.re, 4)
     ))

@@ -4,6 +4,8 @@ use qcar_signals::si::{in_si, is_known};
 
 /// A body at rest has an acceleration of 1 g if gravity is not subtracted: tolerance of the mean, relative to 1 g.
 const ABOUT_ONE: f64 = 0.05;
+/// Standard gravity, m/s².
+const GRAVITY: f64 = 9.80665;
 /// Largest plausible suspension travel, m.
 const TRAVEL: f64 = 1.0;
 
@@ -42,4 +44,18 @@ pub(crate) fn suspicion(unit: &str, does: Option<Statistics>) -> Option<String> 
         [1, 1, -2] if unit == "kp" => Some("`kp` is an old name of kgf, and taken for 9.80665 N".into()),
         _ => None,
     }
+}
+
+/// A sentence on an acceleration in this unit whose mean is that of gravity; `None` for any other signal.
+pub(crate) fn gravity(unit: &str, does: &Statistics) -> Option<String> {
+    let si = in_si(unit).filter(|si| si.dimension == [0, 1, -2])?;
+    let mean = does.mean * si.multiply / si.divide;
+    let is_gravity = (mean.abs() / GRAVITY - 1.0).abs() < ABOUT_ONE && does.max > does.min;
+    is_gravity.then(|| {
+        let mean = does.mean;
+        format!(
+            "a mean of {mean:.3} {unit} is that of gravity, which is no motion of the model; subtract it, as `offset` or \
+             `zero = \"start\"` of a channel with a `source` do"
+        )
+    })
 }

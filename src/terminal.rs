@@ -3,6 +3,7 @@
 
 use std::env;
 use std::io::{IsTerminal, Write};
+use std::path::Path;
 use std::sync::OnceLock;
 
 use clap::ValueEnum;
@@ -120,6 +121,16 @@ pub fn prose(text: &str) -> String {
     }
 }
 
+/// A path as a word of a printed command: in quotes if a shell would take it apart.
+pub fn word(path: &Path) -> String {
+    let text = path.display().to_string();
+    let is_plain = |c: char| c.is_alphanumeric() || "._-/+,:@%=\\".contains(c);
+    match text.chars().all(is_plain) {
+        true => text,
+        false => format!("'{}'", text.replace('\'', r"'\''")),
+    }
+}
+
 /// An error for standard error; the place at the start of each line is marked.
 pub fn complaint(text: &str) -> String {
     let error = outlets()[1];
@@ -167,7 +178,16 @@ fn broken(line: &str, width: usize) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::broken;
+    use std::path::Path;
+
+    use super::{broken, word};
+
+    #[test]
+    fn a_path_is_one_word_of_a_command() {
+        assert_eq!(word(Path::new("new/rig_1.axle")), "new/rig_1.axle");
+        assert_eq!(word(Path::new("my rig")), "'my rig'");
+        assert_eq!(word(Path::new("a'b")), r"'a'\''b'");
+    }
 
     #[test]
     fn a_long_line_is_broken_between_words() {

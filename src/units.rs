@@ -228,6 +228,14 @@ pub fn script() -> String {
     CHOSEN.get().map_or(String::new(), Units::script)
 }
 
+/// The unit of a magnitude in decibels: relative to 1 of the shown unit, which a pure number has not.
+pub fn decibels(si: &str) -> String {
+    match &*name(si) {
+        "1" => "dB".into(),
+        unit => format!("dB re 1 {unit}"),
+    }
+}
+
 /// A column heading with its shown unit in brackets; a pure number has none.
 pub fn heading(what: &str, si: &str) -> String {
     match &*name(si) {

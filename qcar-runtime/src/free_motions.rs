@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use nalgebra::Complex;
 
 use crate::model::{About, Model, StateKind};
-use crate::modes::{Part, damping, dynamics, eigenvalues, frequency, is_rigid, shape, vibrates};
+use crate::modes::{Part, damping, dynamics, eigenvalues, frequency, is_rigid, shapes, vibrates};
 use crate::response::parameters::Values;
 
 /// A free motion.
@@ -65,40 +65,42 @@ fn grows(damping: f64) -> bool {
 pub fn free_motions(model: &(impl Model + ?Sized), values: &Values) -> FreeMotions {
     let a = dynamics(model, values.as_slice());
     let (rigid, moving): (Vec<_>, Vec<_>) = eigenvalues(&a).into_iter().partition(|root| is_rigid(*root));
-    let motion = |kind: Kind, root: Complex<f64>| FreeMotion {
-        kind,
-        frequency: frequency(root),
-        damping: damping(root),
-        shape: shape(model, &a, root),
+    let (vibrating, real): (Vec<_>, Vec<_>) = moving
+        .into_iter()
+        .filter(|root| vibrates(root) || !vibrates(&root.conj()))
+        .partition(vibrates);
+    let motions_of = |kind: Kind, roots: &[Complex<f64>]| {
+        let shapes = shapes(model, &a, roots);
+        let motion = |(root, shape): (&Complex<f64>, Vec<Part>)| FreeMotion {
+            kind,
+            frequency: frequency(*root),
+            damping: damping(*root),
+            shape,
+        };
+        roots.iter().zip(shapes).map(motion).collect::<Vec<_>>()
     };
-    let real: Vec<f64> = moving
-        .iter()
-        .filter(|root| !oscillates(root))
-        .map(|root| root.re)
-        .collect();
-    let vibrating = moving.iter().filter(|root| vibrates(root));
-    let mut motions: Vec<FreeMotion> = vibrating.map(|root| motion(Kind::Vibration, *root)).collect();
+    let real: Vec<f64> = real.iter().map(|root| root.re).collect();
+    let mut motions = motions_of(Kind::Vibration, &vibrating);
     match real[..] {
         [slow, fast] if slow < 0.0 && fast < 0.0 && rigid.is_empty() && has_only_masses(model.about()) => {
             let product = (slow * fast).sqrt();
-            motions.push(FreeMotion {
+            let overdamped = motions_of(Kind::Overdamped, &[slow.into()]).into_iter();
+            motions.extend(overdamped.map(|slower| FreeMotion {
                 frequency: product / TAU,
                 damping: -(slow + fast) / (2.0 * product),
-                ..motion(Kind::Overdamped, slow.into())
-            });
+                ..slower
+            }));
         }
-        _ => motions.extend(real.iter().map(|root| motion(Kind::Aperiodic, (*root).into()))),
+        _ => {
+            let roots: Vec<Complex<f64>> = real.iter().map(|root| (*root).into()).collect();
+            motions.extend(motions_of(Kind::Aperiodic, &roots));
+        }
     }
     motions.sort_by(|one, other| one.frequency.total_cmp(&other.frequency));
     FreeMotions {
         motions,
         rigid: rigid.len(),
     }
-}
-
-/// True for an eigenvalue of a vibration and for its conjugate.
-fn oscillates(root: &Complex<f64>) -> bool {
-    vibrates(root) || vibrates(&root.conj())
 }
 
 /// True if every state is the position or velocity of a mass, so that two real eigenvalues beside pairs of complex ones

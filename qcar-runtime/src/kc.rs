@@ -24,9 +24,9 @@ use crate::shown::shown;
 pub struct Cycle {
     /// Gradient of force over displacement, N/m.
     pub stiffness: Estimate,
-    /// Half the width of the loop, N. It includes the damper force at the speed of the cycle: 8 mm/s and 2000 N s/m
-    /// give 16 N.
-    pub friction: Estimate,
+    /// Half the width of the loop, N: dry friction, and the damper force at the speed of the cycle. 8 mm/s and
+    /// 2000 N s/m give 16 N.
+    pub half_width: Estimate,
 }
 
 /// Gradients of vertical sines.
@@ -102,7 +102,7 @@ const DIRECTION_PARTS: usize = 100;
 /// A slope with fewer standard errors is not significant.
 const CLEAR: f64 = 3.0;
 
-/// Stiffness and friction of a slow cycle: displacement in m, force in N, one value for each sample.
+/// Stiffness and half width of the loop of a slow cycle: displacement in m, force in N, one value for each sample.
 ///
 /// # Errors
 /// Fails if the columns differ in length, if there are too few samples in the middle of the travel, if the travel has
@@ -115,12 +115,12 @@ pub fn cycle(displacement: &[f64], force: &[f64]) -> Result<Cycle, KcError> {
         .filter(|&i| (displacement[i] - middle).abs() <= reach)
         .map(|i| [1.0, displacement[i] - middle, direction(displacement, i), force[i]])
         .collect();
-    let [_, stiffness, friction] = regression::huber(&rows)?;
+    let [_, stiffness, half_width] = regression::huber(&rows)?;
     let (slope, error) = (stiffness.value, stiffness.standard_error);
     if slope <= CLEAR * error {
         return Err(KcError::NoSlope { slope, error });
     }
-    Ok(Cycle { stiffness, friction })
+    Ok(Cycle { stiffness, half_width })
 }
 
 /// Stiffness, damping and friction of one or several sines of one suspension, each with its own mean force.

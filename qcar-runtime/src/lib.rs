@@ -49,6 +49,8 @@ pub mod response;
 pub mod modes;
 // All free motions, also those that do not oscillate.
 pub mod free_motions;
+// The peak of a ratio over frequency.
+mod resonance;
 // Bounded nonlinear least squares.
 pub mod least_squares;
 // The rig fit of thesis section 3.5.

@@ -15,9 +15,10 @@ mod lowest;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-use nalgebra::Complex;
+use nalgebra::{Complex, DVector};
 
-pub(crate) use eigenvector::eigenvector;
+use eigenvector::eigenvectors;
+pub(crate) use eigenvector::{are_equal, eigenvector};
 
 use crate::banded::Ordered;
 use crate::matrices::at_rest;
@@ -29,7 +30,7 @@ use crate::response::parameters::Values;
 pub struct Mode {
     /// Undamped natural frequency `|λ| / 2π`, Hz.
     pub frequency: f64,
-    /// Damping ratio `-Re λ / |λ|`, below 1.
+    /// Damping ratio `-Re λ / |λ|`, below 1; zero if it is a rounding error.
     pub damping: f64,
     /// Motion of every point; the largest amplitude is 1.
     pub shape: Vec<Part>,
@@ -49,14 +50,23 @@ pub struct Part {
 /// Frequency below which a mode counts as a rigid motion of the axle along the road, Hz.
 const RIGID: f64 = 0.01;
 
+/// Damping ratios below this are the rounding errors of an undamped mode: those of its eigenvalue are some 1e-12.
+const UNDAMPED: f64 = 1e-9;
+
 /// Points with an amplitude below this share of the largest count as at rest.
 const STILL: f64 = 1e-6;
 
 /// The modes of a model, lowest frequency first. Eigenvalues without oscillation are left out.
 pub fn modes(model: &(impl Model + ?Sized), values: &Values) -> Vec<Mode> {
     let a = dynamics(model, values.as_slice());
-    let roots = vibrations(&a).into_iter();
-    roots.map(|root| mode(model, &a, root)).collect()
+    let roots = vibrations(&a);
+    let mode = |(root, shape)| Mode {
+        frequency: frequency(root),
+        damping: damping(root),
+        shape,
+    };
+    let shapes = shapes(model, &a, &roots);
+    roots.into_iter().zip(shapes).map(mode).collect()
 }
 
 /// Frequency (Hz) and damping ratio of each mode, without its shape.
@@ -100,8 +110,10 @@ pub(crate) fn frequency(root: Complex<f64>) -> f64 {
     root.norm() / TAU
 }
 
+/// Damping ratio of an eigenvalue; zero if it is a rounding error.
 pub(crate) fn damping(root: Complex<f64>) -> f64 {
-    -root.re / root.norm()
+    let ratio = -root.re / root.norm();
+    if ratio.abs() < UNDAMPED { 0.0 } else { ratio }
 }
 
 /// Pairs of modes of two models that correspond, by their positions in both lists; each mode is in at most one pair.
@@ -190,17 +202,14 @@ pub(crate) fn dynamics(model: &(impl Model + ?Sized), p: &[f64]) -> Ordered {
     Ordered::of(about.states.len(), &nonzeros.collect::<Vec<_>>())
 }
 
-fn mode(model: &(impl Model + ?Sized), a: &Ordered, root: Complex<f64>) -> Mode {
-    Mode {
-        frequency: frequency(root),
-        damping: damping(root),
-        shape: shape(model, a, root),
-    }
+/// For each eigenvalue, the motion of every point; the largest amplitude is 1.
+pub(crate) fn shapes(model: &(impl Model + ?Sized), a: &Ordered, roots: &[Complex<f64>]) -> Vec<Vec<Part>> {
+    let vectors = eigenvectors(a, roots);
+    vectors.iter().map(|vector| shape(model, vector)).collect()
 }
 
-/// The motion of every point that belongs to an eigenvalue; the largest amplitude is 1.
-pub(crate) fn shape(model: &(impl Model + ?Sized), a: &Ordered, root: Complex<f64>) -> Vec<Part> {
-    let vector = eigenvector(a, root);
+/// The motion of every point in an eigenvector.
+fn shape(model: &(impl Model + ?Sized), vector: &DVector<Complex<f64>>) -> Vec<Part> {
     let states = model.about().states.iter().zip(vector.iter());
     let positions = states.filter(|(state, _)| state.kind == StateKind::Position);
     let positions: Vec<_> = positions.collect();

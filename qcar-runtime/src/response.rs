@@ -14,16 +14,14 @@ pub mod periodic;
 pub mod ratio;
 // Ratios as logarithms, for the fit.
 pub mod logarithm;
-// The peak of a ratio over frequency.
-pub(crate) mod resonance;
 
 use crate::model::{Model, ResponseLayout, ResponseMut};
 pub use linearized::OperatingPoint;
 
 /// The frequency response of a model to one excitation on a fixed grid; its buffers are reused.
 pub struct Response<'m, M: ?Sized> {
-    model: &'m M,
-    excitation: usize,
+    pub(crate) model: &'m M,
+    pub(crate) excitation: usize,
     omega: Vec<f64>,
     layout: ResponseLayout,
     /// The operating point of a nonlinear model; `None` for a linear one.

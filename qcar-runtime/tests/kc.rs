@@ -40,14 +40,14 @@ fn within(estimate: Estimate, truth: f64, errors: f64) -> bool {
 #[test]
 fn a_bounce_gives_stiffness_and_half_the_loop() {
     let (displacement, force) = bounce(30e3, 120.0, 8.0, 1);
-    let Cycle { stiffness, friction } = cycle(&displacement, &force).unwrap();
+    let Cycle { stiffness, half_width } = cycle(&displacement, &force).unwrap();
     assert!(
-        within(stiffness, 30e3, 3.0) && within(friction, 120.0, 3.0),
-        "{stiffness:?} {friction:?}"
+        within(stiffness, 30e3, 3.0) && within(half_width, 120.0, 3.0),
+        "{stiffness:?} {half_width:?}"
     );
     assert!(
-        stiffness.standard_error < 30.0 && friction.standard_error < 1.0,
-        "{stiffness:?} {friction:?}"
+        stiffness.standard_error < 30.0 && half_width.standard_error < 1.0,
+        "{stiffness:?} {half_width:?}"
     );
 }
 

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use qcar_dsl::response::Wanted;
+use qcar_runtime::campaign::RoleNames;
 use qcar_runtime::ensemble::{self, Axis, DIMENSIONS, Design, Ensemble, Metrics, POINTS, Posterior, Scheme, Track};
 use qcar_runtime::error::InputError;
 use qcar_runtime::model::{About, Model};
@@ -15,6 +16,8 @@ use qcar_runtime::simulate::{Variant, tyre_of};
 use crate::catalogue::{self, Loaded};
 use crate::failure::{Failure, flag};
 use crate::parameters::{self, FileExtras};
+use crate::roads::check_rolls;
+use crate::stability::unstable;
 use crate::table::number;
 use crate::verbs::{ModelArguments, each_once, frf};
 
@@ -134,12 +137,13 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let values = parameters::resolve(model.about(), files.map(PathBuf::as_path), &arguments.model.set)?;
     parameters::require_in_range(model.about(), &arguments.model.set)?;
     model.check_inertias(values.as_slice())?;
-    let notices = parameters::out_of_range(model.about(), values.as_slice());
+    let mut notices = parameters::out_of_range(model.about(), values.as_slice());
+    notices.extend(unstable(&*model, &values));
     let design = design(arguments, model.about(), &values, drawn.map(|(posterior, _)| posterior))?;
     let possible = |p: &[f64]| model.check_inertias(p).err().map(|error| error.to_string());
     let ensemble = Ensemble {
         model: &*model,
-        track: track(arguments)?,
+        track: track(arguments, model.about())?,
         metrics: metrics(arguments, &model)?,
         values,
         design,
@@ -275,11 +279,12 @@ fn axes_of(about: &About, posterior: &Posterior) -> Vec<Axis> {
 /// Tyre, load and roads of the rides; `None` without rides.
 ///
 /// # Errors
-/// Fails if the vehicle has no tyre, or if a parameter varies on which the tyre depends.
-fn track(arguments: &Arguments) -> Result<Option<Track>, Failure> {
+/// Fails if the model does not roll, if the vehicle has no tyre, or if a parameter varies on which the tyre depends.
+fn track(arguments: &Arguments, about: &About) -> Result<Option<Track>, Failure> {
     if arguments.rides.is_empty() {
         return Ok(None);
     }
+    check_rolls(about, &RoleNames::default(), "--rides")?;
     vary::refuse_facts(&arguments.vary)?;
     let Some(file) = &arguments.model.params else {
         let remedy = "add --params with a campaign, or a file that has [vehicle]";

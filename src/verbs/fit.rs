@@ -183,6 +183,9 @@ pub struct Fitted {
     pub profiles: Vec<ParameterProfile>,
     /// Results of fits to resamples; `None` if they were not requested.
     pub bootstrap: Option<Bootstrap>,
+    /// Number of other minima of a fit to all runs as they are; `None` without a search, and for a fit to
+    /// transmissibilities, which lists its minima itself.
+    pub other_minima: Option<usize>,
     /// Duration of reading, estimating and fitting, s.
     pub seconds: f64,
 }
@@ -307,6 +310,7 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
         fit,
         profiles,
         bootstrap,
+        other_minima: None,
     };
     match of_all_runs {
         Some(found) => records::take_over(&mut fitted, found),

@@ -8,6 +8,7 @@ use nalgebra::Complex;
 use qcar_dsl::response::Wanted;
 use qcar_runtime::error::InputError;
 use qcar_runtime::model::{About, Channel, Model};
+use qcar_runtime::modes::frequencies;
 use qcar_runtime::response::Response;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::response::ratio::{Ratio, between};
@@ -93,6 +94,34 @@ impl Frequencies {
     }
 }
 
+/// # Errors
+/// Fails if a channel is infinite at a frequency, because that is the one of an undamped mode.
+fn refuse_resonance(model: &dyn Model, values: &Values, response: &FrequencyResponse) -> Result<(), Failure> {
+    /// Relative difference of the frequency of a mode by rounding.
+    const ROUNDED: f64 = 1e-9;
+    let infinite = response.channels.0.iter().find_map(|(name, channel)| {
+        let line =
+            (0..channel.re.len()).find(|&line| !channel.re[line].is_finite() || !channel.im[line].is_finite())?;
+        Some((name, channel.frequency[line]))
+    });
+    let Some((name, frequency)) = infinite else {
+        return Ok(());
+    };
+    let mut modes = frequencies(model, values).into_iter();
+    if !modes.any(|(own, damping)| damping == 0.0 && (own / frequency - 1.0).abs() < ROUNDED) {
+        return Ok(());
+    }
+    let found = format!("a line at {frequency} Hz, where a mode without damping resonates and `{name}` is infinite");
+    let remedy = "move the lines, or give the mode damping";
+    Err(flag(
+        "--frequencies",
+        found,
+        "lines beside the frequencies of undamped modes",
+        remedy,
+    )
+    .into())
+}
+
 /// Runs the verb.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let wanted = match arguments.format {
@@ -120,6 +149,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
             .chain(unstable(&*model, &values))
             .collect(),
     };
+    refuse_resonance(&*model, &values, &response)?;
     let values = response.channels.0.iter().map(|(_, channel)| channel);
     parameters::require_finite(
         &model.about().name,
@@ -265,22 +295,12 @@ pub fn excitation(about: &About, channel: &Channel) -> Result<usize, Failure> {
     })
 }
 
-/// Heading of a column of decibels, relative to 1 of the shown unit.
-fn decibels(name: &str, si: &str) -> String {
-    match &*units::name(si) {
-        "1" => format!("{name}_dB"),
-        unit => format!("{name}_dB re 1 {unit}"),
-    }
-}
-
 fn text(of: &FrequencyResponse, frequency: &[f64]) -> String {
     let mut headings = vec![format!("frequency_{}", units::name("Hz"))];
-    headings.extend(
-        of.channels
-            .0
-            .iter()
-            .flat_map(|(name, channel)| [decibels(name, &channel.unit), format!("{name}_deg")]),
-    );
+    headings.extend(of.channels.0.iter().flat_map(|(name, channel)| {
+        let decibels = units::decibels(&channel.unit);
+        [format!("{name}_{decibels}"), format!("{name}_deg")]
+    }));
     let mut table = Table::with_headings(headings);
     for (line, frequency) in frequency.iter().enumerate() {
         let polar = of.channels.0.iter().flat_map(|(_, channel)| {

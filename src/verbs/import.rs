@@ -7,8 +7,8 @@ use super::new::campaign::{make_head, seen_from};
 use crate::catalogue;
 use crate::completion;
 use crate::failure::{Failure, flag};
-use crate::files::put;
-use crate::terminal::prose;
+use crate::files::{put, write_new};
+use crate::terminal::{prose, word};
 use clap::Args;
 use clap_complete::engine::ArgValueCompleter;
 
@@ -66,17 +66,20 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     };
     let mut files = Vec::new();
     for file in &arguments.files {
+        let contents = Contents::of(file, &pads)?;
+        must_have_channels(file, &contents)?;
         files.push(Measured {
             seen: seen_from(&arguments.out, &file.display().to_string(), false),
-            contents: Contents::of(file, &pads)?,
+            contents,
             file: file.clone(),
         });
     }
-    let proposed = sensors::propose(&files, model.about());
+    let mut proposed = sensors::propose(&files, model.about());
     let runs: Vec<Vec<kind::Proposed>> = files
         .iter()
         .map(|file| kind::propose(file, &proposed, model.about()))
         .collect();
+    proposed.take_for_curves(runs.iter().flatten().flat_map(kind::Proposed::channels_of_curve));
     let model_name = seen_from(
         &arguments.out,
         &arguments.model,
@@ -85,8 +88,17 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let mut text = make_head(&name, &model_name, model.about());
     text += &sensors::sections(&proposed, model.about());
     text += &kind::sections(&runs.iter().flatten().collect::<Vec<_>>());
-    put(&arguments.out, "campaign.toml", &text)?;
+    write_new(&[&arguments.out], || put(&arguments.out, "campaign.toml", &text))?;
     Ok(prose(&report(arguments, &files, &proposed, &runs)))
+}
+
+fn must_have_channels<T>(file: &Path, contents: &Contents<T>) -> Result<(), Failure> {
+    if !contents.recording.signals.is_empty() {
+        return Ok(());
+    }
+    let found = format!("{}, a file without channels", file.display());
+    let remedy = "export the measured channels too, or leave the file out";
+    Err(flag("FILES", found, "files with measured channels", remedy).into())
 }
 
 fn must_be_new(folder: &Path) -> Result<(), Failure> {
@@ -155,10 +167,11 @@ fn report(
         text += "\n";
     }
     text += &sensors::table(proposed);
-    let out = arguments.out.display();
     text += &format!(
-        "\n{out}/campaign.toml written. Now\n1. read it from top to bottom, and fill in every line marked `give yours`\n"
+        "\n{}/campaign.toml written. Now\n1. read it from top to bottom, and fill in every line marked `give yours`\n",
+        arguments.out.display()
     );
+    let out = word(&arguments.out);
     text += &format!("2. qcar check {out}\n3. qcar fit {out}\n");
     text
 }

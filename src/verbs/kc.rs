@@ -26,6 +26,9 @@ use crate::verbs::Format;
 mod write;
 
 /// Print stiffness, damping and friction from the K&C curves of a campaign, and its start values
+///
+/// A slow cycle is read over the middle half of its travel. Half the width of its loop is dry friction and the damping at
+/// the speed of the rig together; sines tell them apart.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar kc models/campaigns/axle_a_rig\n  qcar kc models/campaigns/axle_a_rig --format json"
@@ -52,7 +55,7 @@ pub(crate) struct Gradient {
     slope: Option<Slope>,
     /// Test: `bounce`, `dynamic_bounce` or `longitudinal`.
     pub test: &'static str,
-    /// Quantity: `stiffness`, `damping` or `friction`.
+    /// Quantity: `stiffness`, `damping`, `friction`, or `half_width` of the loop of a slow cycle.
     pub quantity: &'static str,
     /// Value, in `unit`.
     pub value: f64,
@@ -169,7 +172,7 @@ fn quasi_static(campaign: &Campaign, run: &Run, test: &'static str) -> Result<[G
     let gradient = |of, slope| gradient((run, test), of, slope);
     Ok([
         gradient(("stiffness", cycle.stiffness, "N/m"), Some(Slope::Stiffness)),
-        gradient(("friction", cycle.friction, "N"), None),
+        gradient(("half_width", cycle.half_width, "N"), None),
     ])
 }
 
@@ -337,8 +340,14 @@ fn text(of: &[Gradient]) -> String {
             or_dash(gradient.start.map(shown), 4),
         ]);
     }
-    table.text() + &notes(of)
+    let is_wide = of.iter().any(|gradient| gradient.quantity == "half_width");
+    let loops = if is_wide { HALF_WIDTH } else { "" };
+    table.text() + &notes(of) + loops
 }
+
+/// What the half width of a loop contains.
+const HALF_WIDTH: &str = "note: half_width is that of the loop of a slow cycle: dry friction and the damping at the speed \
+                          of the rig, which sines of dynamic_bounce tell apart\n";
 
 /// Each reason once, with the parameters (or the gradients without a parameter) that have no value because of it.
 fn notes(of: &[Gradient]) -> String {

@@ -160,9 +160,6 @@ fn notices(model: &dyn Model, values: &Values, found: &FreeMotions) -> Vec<Strin
         .collect()
 }
 
-/// Damping ratios below this are the rounding errors of an undamped mode; text shows them as 0.
-const ROUNDED: f64 = 1e-9;
-
 fn text(of: &Modes, points: &[(String, String)]) -> String {
     let frequency = format!("frequency_{}", units::name("Hz"));
     let head = ["mode".into(), "kind".into(), frequency, "damping_ratio".into()];
@@ -175,14 +172,7 @@ fn text(of: &Modes, points: &[(String, String)]) -> String {
             mode.number.map_or("-".into(), |number| number.to_string()),
             mode.words(),
             number(units::value(mode.frequency, "Hz"), 5),
-            number(
-                if mode.damping.abs() < ROUNDED {
-                    0.0
-                } else {
-                    mode.damping
-                },
-                4,
-            ),
+            number(mode.damping, 4),
         ];
         let shape = points.iter().flat_map(|point| match mode.part(point) {
             Some(part) => [number(part.amplitude, 4), number(part.phase, 4)],

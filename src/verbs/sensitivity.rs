@@ -205,6 +205,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         [] => selection::usual(&ground, &subject.roles),
         names => selection::metrics(&ground, names)?,
     };
+    let (metrics, infinite) = selection::without_infinite(&ground, &subject.values, metrics);
     let parameters = selection::parameters(subject.model.about(), &subject.values, &arguments.parameters)?;
     let sources = sources(&subject, &parameters, arguments)?;
     let plan = arguments.sobol.map(|designs| Plan {
@@ -220,7 +221,8 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let found = while_counting(format!("{}: design", subject.name), |on_progress| {
         gather::gather(&subject, &mut ground, &asked, on_progress)
     });
-    let found = found.map_err(|error| refused(&subject.name, &error))?;
+    let mut found = found.map_err(|error| refused(&subject.name, &error))?;
+    found.notices.extend(infinite);
     if let Some(folder) = &arguments.out {
         put(folder, "sensitivity.json", &json::line(&found))?;
         put(folder, "sensitivity.csv", &render::csv(&found))?;

@@ -158,6 +158,7 @@ fn over_roads(arguments: &Arguments) -> Result<String, Failure> {
         model,
         values,
     } = open(&arguments.campaign, &arguments.choices)?;
+    roads::check_rolls(model.about(), &campaign.roles, "--road")?;
     let variant = arguments.choices.variant.into();
     let courses = roads::courses(&arguments.road, &[])?;
     if let Some(folder) = &arguments.out {

@@ -93,7 +93,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let chance = plan.sources.chance(&subject)?;
     let answer = gather::gather((&subject, &ground), &plan, chance, arguments.seed, wanted).ok_or_else(|| {
         let (found, expected) = (
-            "no design in range that can be simulated",
+            "no design in range that is stable and can be simulated",
             "ranges that contain such designs",
         );
         read.problem(

@@ -13,6 +13,7 @@ mod dynamometer;
 mod effects;
 mod explore;
 mod export;
+mod extremes;
 mod far_starts;
 mod fits;
 mod help;

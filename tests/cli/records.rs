@@ -163,6 +163,16 @@ fn gains_of_input_and_output_limit_what_a_record_determines() {
         let expected = 0.007 * 2_f64.sqrt();
         assert!((error / value / expected - 1.0).abs() < 0.05, "{name}: {own}");
     }
+    // With all of them known there is no search that could converge.
+    let known = succeeds(&[&line[..], &["--fix", "m_body,c_body,k_body"]].concat());
+    assert!(
+        known.contains("no parameter was free") && !known.contains("1 start,"),
+        "{known}"
+    );
+    assert!(
+        known.contains("these values are wrong, or the model lacks something"),
+        "{known}"
+    );
 }
 
 const TRUTH: [(&str, f64, &str); 3] = [

@@ -360,6 +360,12 @@ const WITHOUT: &str = "run channel role mass axis parameter quantity unit matrix
 fn names_its_unit(heading: &str, headings: &[&str]) -> bool {
     let pure = WITHOUT.split_whitespace().any(|name| name == heading);
     let beside = [
+        "measured_re",
+        "measured_im",
+        "before_re",
+        "before_im",
+        "after_re",
+        "after_im",
         "measured_rms",
         "rms_error",
         "a",

@@ -1,4 +1,4 @@
-//! JavaScript in Node: the functions of a model, and the responses of its channels.
+//! JavaScript in Node: the functions of a model, the responses of its channels, and what reports say of a model.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -130,4 +130,87 @@ fn a_parameter_that_the_model_has_not_is_refused() {
     let refused = "(() => { try { model.values({ k_tyre: 1 }); } catch (error) { return error.message; } })()";
     let said = computed(node, "quarter_car", &[], refused);
     assert_eq!(said, "quarter_car has no parameter k_tyre");
+}
+
+/// What an expression gives after a script of the reports.
+fn in_report(node: &Path, script: &str, expression: &str) -> Value {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/report/js").join(script);
+    let text = std::fs::read_to_string(path).unwrap();
+    let program = format!("const words = (own) => own; {text}\nconsole.log(JSON.stringify({expression}))");
+    let folder = tempfile::tempdir().unwrap();
+    serde_json::from_str(&run(node, &["--eval", &program], folder.path())).unwrap()
+}
+
+/// A cab on two mounts and a seat at a point of it: its pitch is no part of its own. A lever between wheel and body is.
+#[test]
+fn drawings_end_at_the_mass_that_turns() {
+    let Some(node) = node() else { return };
+    let drawn = |points: &str, links: &str, expression: &str| {
+        let point = "const P = (name, kind, angle) => ({ name, kind, angle: !!angle, axis: 'z' })";
+        let link = "const L = (name, ...ends) => ({ name, axis: 'z', ends: ends.map(([point, share]) => ({ point, share })) })";
+        let axle = format!("{{ points: [{points}], links: [{links}] }}");
+        let call = format!(
+            "(() => {{ {point}; {link}; const {{ place, links }} = axleLayout({axle}, 'z'); return {expression}; }})()"
+        );
+        in_report(node, "layout.js", &call)
+    };
+    let ends = "links.map((own) => own.ends.map((end) => end.point).join('-'))";
+    let points = "P('frame', 'motion'), P('seat', 'mass'), P('cab', 'mass'), P('pitch', 'mass', true)";
+    let links = "L('cushion', ['seat', 1], ['cab', -1], ['pitch', -0.3]), L('front', ['cab', 1], ['pitch', 0.8], ['frame', -1]), \
+                 L('rear', ['cab', 1], ['pitch', -0.8], ['frame', -1])";
+    let joined = ["seat-cab", "cab-frame", "cab-frame"];
+    assert_eq!(drawn(points, links, ends), serde_json::json!(joined));
+    let turns = "place.get('cab').turns.map((own) => own.name)";
+    assert_eq!(drawn(points, links, turns), serde_json::json!(["pitch"]));
+    let points = "P('road', 'road'), P('wheel', 'mass'), P('body', 'mass'), P('rocker', 'mass', true)";
+    let links = "L('strut', ['body', 1], ['wheel', -1], ['rocker', -0.1]), L('tyre', ['wheel', 1], ['road', -1])";
+    assert_eq!(
+        drawn(points, links, ends),
+        serde_json::json!(["body-wheel-rocker", "wheel-road"])
+    );
+}
+
+/// A limit is stated only if it is one of the model.
+#[test]
+fn limits_are_those_of_the_model() {
+    let Some(node) = node() else { return };
+    let said = |masses: &str, linear: bool, track: bool| {
+        let axle = format!("{{ before: {{ linear: {linear}, points: [{masses}] }} }}");
+        in_report(
+            node,
+            "limits.js",
+            &format!("motions({{ axles: {axle}, track: {track} }})"),
+        )
+    };
+    let mass = |name: &str, axis: &str, angle: bool| {
+        format!("{{ kind: 'mass', name: '{name}', axis: '{axis}', angle: {angle} }},")
+    };
+    let both = mass("body", "z", false) + &mass("body", "x", false);
+    let whole = "Bodies move along z and x, without pitch and roll; only the rolling tyre couples the directions.";
+    assert_eq!(said(&both, true, true), whole);
+    assert_eq!(
+        said(&both, false, true),
+        "Bodies move along z and x, without pitch and roll."
+    );
+    let cab = mass("cab", "z", false) + &mass("pitch", "z", true);
+    assert_eq!(said(&cab, true, false), "Bodies move along z and turn by pitch only.");
+}
+
+/// A fit to records has no cost; a fit to transmissibilities has minima that starts found.
+#[test]
+fn a_report_says_how_the_search_ended() {
+    let Some(node) = node() else { return };
+    let said = |others: &str, minima: &str| {
+        let fit = format!("{{ minima: [{minima}], starts: 16, cost: 2, start_cost: 5 }}");
+        in_report(
+            node,
+            "parameters.js",
+            &format!("(() => {{ number = String; return searched({fit}, {others}); }})()"),
+        )
+    };
+    assert_eq!(said("0", ""), " 16 starts found no other minimum.");
+    assert_eq!(said("1", ""), " 16 starts found 1 other minimum.");
+    let found = " 7 of 16 starts found this minimum, cost 2 (5 at the start values).";
+    assert_eq!(said("null", "{ starts: 7 }"), found);
+    assert_eq!(said("null", ""), "");
 }

@@ -199,7 +199,7 @@ fn plain_tables_are_checked_too() {
     }
 }
 
-/// Gravity of 1 m/s^2, and a wheel that travels by metres.
+/// Gravity of 1 m/s^2 and as it is, and a wheel that travels by metres.
 #[test]
 fn units_that_samples_contradict_are_said() {
     let keys = "unit = \"m/s^2\"";
@@ -216,6 +216,8 @@ fn units_that_samples_contradict_are_said() {
         qcar(folder(&sections, ("rig.csv", table.as_bytes())).path(), "check .").1
     };
     let (sound, doubtful) = (said(0.0, 0.012), said(1.0, 12.0));
+    let gravity = "rig.csv, `body_left_z`: a mean of -9.810 m/s^2 is that of gravity";
+    assert!(said(-9.81, 0.012).contains(gravity) && !said(8.0, 0.012).contains("gravity"));
     assert!(!sound.contains("unit"), "{sound}");
     for part in [
         "rig.csv, `body_left_z`: a mean of 1.00 m/s^2 is that of a sensor at rest in g",

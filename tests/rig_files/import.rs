@@ -175,10 +175,30 @@ fn a_workbook_of_a_kinematics_rig_becomes_a_curve() {
         status == 0 && said.contains("taken for a K&C curve, `Vertical force` over `Wheel travel`"),
         "{said}"
     );
+    // Its travel and force need no sensor; what else it has does not belong to the model.
+    assert!(
+        !said.contains("Wheel travel: no sensor") && !said.contains("Vertical force: no sensor"),
+        "{said}"
+    );
+    let words = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        words
+            .contains("Toe: no sensor, its unit is that of an angle, and no word in its name is an angle of the model")
+    );
     let campaign = open(&folder.path().join("kc")).unwrap();
     let curve = campaign.curve(&campaign.runs[0]).unwrap();
     assert_eq!((curve.displacement.len(), curve.displacement[0]), (81, -0.08));
     assert!(curve.force.iter().all(|force| (1632.0..7295.0).contains(force)));
+}
+
+#[test]
+fn a_file_without_channels_is_no_campaign() {
+    let folder = tempfile::tempdir().unwrap();
+    let sample = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let sample = sample.join("qcar-signals/tests/samples/uff/testlab_151_164_geometry.uff");
+    let (status, said) = qcar(folder.path(), &format!("import {} --out rig", sample.display()));
+    assert!(status == 2 && said.contains("a file without channels"), "{said}");
+    assert!(!folder.path().join("rig").exists());
 }
 
 /// A trap whose units are wrong, and files of programs whose units are right.

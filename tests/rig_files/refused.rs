@@ -243,6 +243,27 @@ fn rates_beyond_reason_are_refused() {
 }
 
 #[test]
+fn a_run_without_channels_is_told_what_it_lacks() {
+    for keys in ["", "sample_rate = 100"] {
+        let folder = folder(
+            &history("a.mf4", keys),
+            (
+                "a.mf4",
+                &mdf4::file(&[Group::at(
+                    100.0,
+                    vec![Channel::new("FL_Body_Acc_Z", "g", vec![0.5; 200])],
+                )]),
+            ),
+        );
+        let error = open(folder.path()).unwrap_err().to_string();
+        assert!(
+            error.contains("`[[channel]]`") && error.contains("qcar inspect"),
+            "{error}"
+        );
+    }
+}
+
+#[test]
 fn a_file_without_times_needs_a_rate() {
     let text = "FL_Pad_Acc_Z [g];FL_Body_Acc_Z [g]\n1;2\n2;3\n3;1\n4;7\n";
     let sections = |keys: &str| pad() + &channel("body", "source = \"FL_Body_Acc_Z\"") + &history("rig.txt", keys);

@@ -67,12 +67,38 @@ pub(super) fn highest_rate(files: &Files, file: &Path, mappings: &[&ChannelMappi
     if highest > 0.0 {
         return Ok(highest);
     }
-    let found = match is_any {
-        true => "channels without times",
-        false => "none of the channels that the campaign names",
+    let (found, remedy) = match is_any {
+        true => (
+            "channels without times",
+            "state `sample_rate`, and correct the `source` of the channels",
+        ),
+        false if mappings.is_empty() => (
+            "no `[[channel]]` for it in the campaign",
+            "add one with its `source` for each sensor; `qcar inspect` lists the channels of the file",
+        ),
+        false => (
+            "none of the channels that the campaign names",
+            "state `sample_rate`, and correct the `source` of the channels",
+        ),
     };
-    let remedy = "state `sample_rate`, and correct the `source` of the channels";
     Err(Problem::new(file, Place::File, found, "channels with a sample rate", remedy).into())
+}
+
+/// The problem of a run for which the campaign declares no channel.
+fn undeclared(campaign: &Campaign, run: &Run) -> Problem {
+    let found = format!("none for the run `{}`", run.name);
+    let remedy = format!(
+        "add one with its `source`; `qcar inspect {}` lists the channels of the file",
+        run.file
+    );
+    let place = Place::Name("channel".into());
+    Problem::new(
+        campaign.manifest(),
+        place,
+        found,
+        "a `[[channel]]` for each sensor",
+        remedy,
+    )
 }
 
 /// Reads a run.
@@ -96,6 +122,9 @@ pub(super) fn record(campaign: &Campaign, files: &Files, run: &Run) -> Result<Ru
     }
     if channels.is_empty() || run.test.sample_rate().is_none() {
         problems.extend(missing.iter().map(|missing| missing.problem.clone()));
+    }
+    if channels.is_empty() && problems.is_empty() {
+        problems.push(undeclared(campaign, run));
     }
     InputError::unless_empty(problems, Some(()))?;
     let together = Together::new(&file, &channels, span, run.test.sample_rate())?;

@@ -67,7 +67,7 @@ impl Alignment {
     /// # Errors
     /// Fails if a record never rises above zero.
     pub fn at_peak(measured: &[f64], simulated: &[f64]) -> Result<Self, CompareError> {
-        let (peak, onset) = peak_and_onset(measured)?;
+        let (peak, onset) = peak_and_onset(measured, "measurement")?;
         let (_, highest) = upward_peak(simulated).ok_or(CompareError::NoPeak { record: "simulation" })?;
         let delays = high_peaks(simulated, PEAK_SHARE * highest).map(|place| place as isize - peak as isize);
         let apart = |delay: &isize| difference(measured, simulated, *delay);
@@ -79,17 +79,17 @@ impl Alignment {
     }
 }
 
-/// The first sample at which the wheel reaches the obstacle, from its vertical acceleration.
+/// The first sample of a simulation at which the wheel reaches the obstacle, from its vertical acceleration.
 ///
 /// # Errors
 /// Fails if a record never rises above zero.
 pub fn onset(record: &[f64]) -> Result<usize, CompareError> {
-    Ok(peak_and_onset(record)?.1)
+    Ok(peak_and_onset(record, "simulation")?.1)
 }
 
-fn peak_and_onset(record: &[f64]) -> Result<(usize, usize), CompareError> {
-    let (peak, height) = upward_peak(record).ok_or(CompareError::NoPeak { record: "measurement" })?;
-    let onset = record.iter().position(|a| a.abs() > ONSET_SHARE * height);
+fn peak_and_onset(samples: &[f64], record: &'static str) -> Result<(usize, usize), CompareError> {
+    let (peak, height) = upward_peak(samples).ok_or(CompareError::NoPeak { record })?;
+    let onset = samples.iter().position(|a| a.abs() > ONSET_SHARE * height);
     Ok((peak, onset.unwrap_or(peak)))
 }
 

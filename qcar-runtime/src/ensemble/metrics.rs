@@ -6,9 +6,9 @@ use crate::campaign::RoleNames;
 use crate::compare::{CompareError, Weighting, Windows, onset, sizes};
 use crate::model::{About, Model, Quantity, Signal, SignalKind, StateKind};
 use crate::modes;
+use crate::resonance::{self, Peak};
 use crate::response::Response;
 use crate::response::parameters::Values;
-use crate::response::resonance;
 use crate::roles::{RoleError, Roles};
 use crate::simulate::{RecordedSignals, Ride};
 
@@ -141,7 +141,8 @@ impl<'a, M: Model + ?Sized> Metrics<'a, M> {
         self.chosen.iter().flat_map(of).collect()
     }
 
-    /// The values of [`Metrics::columns_of_sets`]; NaN for a mode without oscillation.
+    /// The values of [`Metrics::columns_of_sets`]; NaN for a mode without oscillation, and for the height of the peak of
+    /// an undamped mode.
     pub fn of_set(&self, values: &Values) -> Vec<f64> {
         let of = |metric: &Metric| match metric {
             Metric::Transmissibility => self.peaks(values),
@@ -211,7 +212,11 @@ impl<'a, M: Model + ?Sized> Metrics<'a, M> {
             let survey = surveys.iter().find(|(excitation, _)| *excitation == ratio.excitation);
             let (_, survey) = survey.expect("it has just been put there");
             let peak = resonance::highest(survey, values, [&ratio.numerator, &ratio.denominator], false);
-            found.extend(peak.map_or([f64::NAN; 2], |peak| peak.value));
+            found.extend(match peak {
+                Some(Peak::Finite(peak)) => peak.value,
+                Some(Peak::Infinite(frequency)) => [f64::NAN, frequency],
+                None => [f64::NAN; 2],
+            });
         }
         found
     }

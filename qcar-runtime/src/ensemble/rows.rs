@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::design::Design;
 use super::metrics::{Column, Metrics};
+use crate::free_motions::growing;
 use crate::model::Model;
 use crate::response::parameters::Values;
 use crate::simulate::{Car, Ride, Settings, SimulateError, Standard, Variant, rides_abreast};
@@ -186,9 +187,19 @@ impl<M: Model + ?Sized> Ensemble<'_, M> {
         let done = |number: usize, ride: Result<Ride, SimulateError>| {
             let rate = rides[number].1.sample_rate;
             let of_ride = |ride| self.metrics.of_ride(&ride, rate).map_err(|error| error.to_string());
-            measured[places[number]] = ride.map_err(|error| error.to_string()).and_then(of_ride);
+            let found = ride.map_err(|error| error.to_string()).and_then(of_ride);
+            let set = &sets[places[number] / each];
+            measured[places[number]] = found.map_err(|error| self.explained(&set.values, error));
         };
         rides_abreast(&car, &rides, &Settings::default(), &self.metrics.kept(), done);
         measured
+    }
+
+    /// Why a ride has no metrics: an error, or the instability that causes it.
+    fn explained(&self, values: &Values, error: String) -> String {
+        match growing(self.model, values) {
+            Some(_) => format!("the model is unstable with these parameters, so its motion grows ({error})"),
+            None => error,
+        }
     }
 }

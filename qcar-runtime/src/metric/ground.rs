@@ -11,10 +11,11 @@ use super::record::{FilteredRecord, Impact};
 use super::travel::WithTravel;
 use super::vibration::Vibrations;
 use crate::campaign::RoleNames;
+use crate::free_motions::growing;
 use crate::model::{About, Model, Quantity, Signal, SignalKind};
-use crate::modes::{dynamics, vibrations};
+use crate::modes::{are_equal, dynamics, vibrations};
+use crate::resonance::{self, Peak};
 use crate::response::parameters::Values;
-use crate::response::resonance;
 use crate::response::signal::driver;
 use crate::roles::Roles;
 use crate::simulate::{
@@ -82,6 +83,10 @@ pub enum MetricError {
     NoVibration { metric: String, found: usize },
     #[error("`{metric}`: no input drives this channel")]
     NotDriven { metric: String },
+    #[error(
+        "`{metric}`: the mode at {frequency:.4} Hz is undamped, so the channel is infinite there; give the mode damping"
+    )]
+    Undamped { metric: String, frequency: f64 },
 }
 
 impl<'a> Ground<'a> {
@@ -222,6 +227,38 @@ impl<'a> Ground<'a> {
     fn check_possible(&self, values: &Values) -> Result<(), MetricError> {
         let reason = self.impossible.as_ref().and_then(|why| why(values.as_slice()));
         reason.map_or(Ok(()), |reason| Err(MetricError::Impossible { reason }))
+    }
+
+    /// Why a metric that needs no ride has no value with these parameters.
+    ///
+    /// # Errors
+    /// Fails as [`Ground::measure`] does.
+    pub fn check_at_rest(&self, values: &Values, metric: usize) -> Result<(), MetricError> {
+        let own = &self.metrics[metric];
+        match own.what {
+            What::Peak(_) | What::PeakFrequency(_) => AtRest::new(self, values, &[]).find(self, values, own).map(drop),
+            What::Ride(..) | What::Frequency(_) | What::Damping(_) => Ok(()),
+        }
+    }
+
+    /// The metrics of modes whose eigenvalue is that of another mode too. They have no derivatives, because a change may
+    /// part both.
+    pub fn of_equal_modes(&self, values: &Values) -> Vec<usize> {
+        let roots = vibrations(&dynamics(&self.model, values.as_slice()));
+        let is_repeated = |place: usize| {
+            let mut others = (0..roots.len()).filter(|&other| other != place);
+            place < roots.len() && others.any(|other| are_equal(roots[place], roots[other]))
+        };
+        let of_mode = |metric: &usize| match self.metrics[*metric].what {
+            What::Frequency(place) | What::Damping(place) => is_repeated(place),
+            What::Ride(..) | What::Peak(_) | What::PeakFrequency(_) => false,
+        };
+        (0..self.metrics.len()).filter(of_mode).collect()
+    }
+
+    /// True if a motion of the model at rest grows with these parameters.
+    pub fn is_unstable(&self, values: &Values) -> bool {
+        growing(&self.model, values).is_some()
     }
 
     /// The courses of all readings.
@@ -442,9 +479,12 @@ impl<'d> AtRest<'d> {
             let survey = driver(ground.about(), channel).map(|own| resonance::survey(&ground.model, values, own));
             let (ends, wanted) = ([&channel.numerator, &channel.denominator], !directions.is_empty());
             let own = survey.and_then(|survey| resonance::highest(&survey, values, ends, wanted));
-            let own = own.ok_or_else(|| MetricError::NotDriven {
-                metric: metric.name.clone(),
-            })?;
+            let metric = metric.name.clone();
+            let own = match own {
+                Some(Peak::Finite(own)) => own,
+                Some(Peak::Infinite(frequency)) => return Err(MetricError::Undamped { metric, frequency }),
+                None => return Err(MetricError::NotDriven { metric }),
+            };
             let along = |direction: &Vec<f64>| own.slopes.iter().map(|(k, slope)| slope[which] * direction[*k]).sum();
             Ok((own.value[which], directions.iter().map(along).collect()))
         };

@@ -8,7 +8,7 @@ use nalgebra::Complex;
 use crate::banded::Ordered;
 use crate::matrices::sensitivities_at_rest;
 use crate::model::{Matrix, Model};
-use crate::modes::{dynamics, eigenvector, first_vibrations};
+use crate::modes::{damping, dynamics, eigenvector, first_vibrations, frequency};
 
 /// Modes of a model, lowest frequency first, with derivatives along directions of the parameters.
 pub(super) struct Vibrations<'d> {
@@ -51,7 +51,7 @@ impl<'d> Vibrations<'d> {
     /// the model has fewer modes.
     pub fn mode(&self, place: usize) -> Option<([f64; 2], &[[f64; 2]])> {
         let own = self.modes.get(place)?;
-        let value = [own.root.norm() / TAU, -own.root.re / own.root.norm()];
+        let value = [frequency(own.root), damping(own.root)];
         Some((value, own.slopes.get_or_init(|| self.slopes(own.root))))
     }
 

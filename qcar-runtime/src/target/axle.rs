@@ -65,8 +65,9 @@ impl Axle<'_> {
 const ABREAST: usize = 12;
 
 impl Axle<'_> {
-    fn results(&self, measured: Result<Vec<f64>, MetricError>) -> Option<Vec<f64>> {
-        let mut values = measured.ok()?;
+    /// The results of measured readings; `None` of a design that is unstable, whose metrics mean nothing.
+    fn results(&self, design: &Values, measured: Result<Vec<f64>, MetricError>) -> Option<Vec<f64>> {
+        let mut values = measured.ok().filter(|_| !self.ground.is_unstable(design))?;
         let means: Vec<f64> = self
             .means
             .iter()
@@ -76,16 +77,25 @@ impl Axle<'_> {
         values.iter().all(|value| value.is_finite()).then_some(values)
     }
 
+    fn results_of(&self, design: &Values) -> Option<Vec<f64>> {
+        self.results(design, self.ground.measure(design))
+    }
+
     fn results_of_all(&self, designs: &[Values]) -> Vec<Option<Vec<f64>>> {
         let parts = designs.par_chunks(ABREAST);
-        let measured = parts.flat_map_iter(|designs| self.ground.measure_all(designs));
-        measured.map(|measured| self.results(measured)).collect()
+        let results = |designs: &[Values]| {
+            let measured = self.ground.measure_all(designs).into_iter();
+            let own = designs.iter().zip(measured);
+            own.map(|(design, measured)| self.results(design, measured))
+                .collect::<Vec<_>>()
+        };
+        parts.flat_map_iter(results).collect()
     }
 }
 
 impl Designs for Axle<'_> {
     fn values(&self, design: &[f64]) -> Option<Vec<f64>> {
-        self.results(self.ground.measure(&self.values_of(design)))
+        self.results_of(&self.values_of(design))
     }
 
     fn is_certain(&self) -> bool {
@@ -93,7 +103,7 @@ impl Designs for Axle<'_> {
     }
 
     fn drawn(&self, design: &[f64], number: u64) -> Option<Vec<f64>> {
-        self.results(self.ground.measure(&self.chance.draw(&self.values_of(design), number)))
+        self.results_of(&self.chance.draw(&self.values_of(design), number))
     }
 
     fn values_of_all(&self, designs: &[Vec<f64>]) -> Vec<Option<Vec<f64>>> {

@@ -102,13 +102,14 @@ function axleDrawing(axle, axis, fresh) {
       role: 'img',
       'aria-label': `${name}: ${links.map(({ link }) => `${words(link.name)} between ${link.ends.map((end) => words(end.point)).join(' and ')}`).join(', ')}`,
     },
+    links.map((own) => drawArms(own, place, scene)),
     links.map((own) => drawLink(own, place, scene)),
     all.map((own) => drawPoint(own, scene)),
   );
   return captioned(`axle-${axis}`, name, drawing);
 }
 
-function drawPoint({ own, level, lanes }, { axis, along, lane, isNew }) {
+function drawPoint({ own, level, lanes, turns }, { axis, along, lane, isNew }) {
   const reach = axis === 'z' ? 46 : 30;
   const [low, high] = [lane(Math.min(...lanes)) - reach, lane(Math.max(...lanes)) + reach];
   const centre = along(level);
@@ -130,7 +131,8 @@ function drawPoint({ own, level, lanes }, { axis, along, lane, isNew }) {
       ? { x: low, y: centre - thick / 2, width: high - low, height: thick }
       : { x: centre - thick / 2, y: low, width: thick, height: high - low };
   const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
-  const lines = axis === 'z' && box.width > 110 ? [label.join(' · ')] : label;
+  const turning = turns.map((angle) => `${words(angle.name)} ${quantity(angle.inertia, 'kg m^2')}`);
+  const lines = axis === 'z' && box.width > 110 ? [label.join(' · '), ...turning] : [...label, ...turning];
   const text = lines.map((line, at) =>
     svg(
       'text',
@@ -190,6 +192,19 @@ function drawLink({ link, ends, lane: at }, place, { axis, along, lane, isNew })
             lines.slice(1).join(' · '),
           ),
         ];
+  return svg(
+    'g',
+    { class: `link${isNew(link) ? ' new' : ''}` },
+    svg('title', {}, `${words(link.name)}: ${elementsText(link).join(', ')}`),
+    shapes,
+    text,
+  );
+}
+
+// Lines from the middle of a link to the levers between its ends. They lie under all labels.
+function drawArms({ link, ends, lane: at }, place, { axis, along, lane, isNew }) {
+  const levels = ends.map((end) => place.get(end.point).level);
+  const [low, high] = [Math.min(...levels), Math.max(...levels)];
   const pivots = ends
     .map((end) => place.get(end.point))
     .filter((own) => own.level !== high && own.level !== low && own.lanes.length);
@@ -198,21 +213,14 @@ function drawLink({ link, ends, lane: at }, place, { axis, along, lane, isNew })
       class: 'arm',
       d: line(
         axis,
-        centre,
-        middle,
+        lane(at),
+        (along(low) + along(high)) / 2,
         lane(own.lanes.reduce((a, b) => (Math.abs(b - at) < Math.abs(a - at) ? b : a))),
         along(own.level),
       ),
     }),
   );
-  return svg(
-    'g',
-    { class: `link${isNew(link) ? ' new' : ''}` },
-    svg('title', {}, `${words(link.name)}: ${elementsText(link).join(', ')}`),
-    arms,
-    shapes,
-    text,
-  );
+  return svg('g', { class: `link${isNew(link) ? ' new' : ''}` }, arms);
 }
 
 function shortened(text) {

@@ -23,7 +23,7 @@ function curves({ kc, loops }) {
     h(
       'p',
       {},
-      'Gradients of the quasi-static and dynamic curves: stiffness from the slope, damping from the force over velocity, friction from half the width of the loop. The uncertainty is one standard deviation. The parameter is the value with which the model has this gradient while its body is held. It exceeds the gradient if there is a compliance in series.',
+      'Gradients of the quasi-static and dynamic curves: stiffness from the slope, damping from the force over velocity, friction from the step of the force where the velocity of a sine changes sign. The half width of the loop of a slow cycle is dry friction and the damping at the speed of the rig together. The uncertainty is one standard deviation. The parameter is the value with which the model has this gradient while its body is held. It exceeds the gradient if there is a compliance in series.',
     ),
     h('div', { class: 'columns two' }, figures),
     table(

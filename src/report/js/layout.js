@@ -5,10 +5,13 @@ const MOST_LANES = 7;
 
 function axleLayout(axle, axis) {
   const points = axle.points.filter((own) => own.axis === axis);
-  const links = axle.links.filter((link) => link.axis === axis).map((link) => ({ link, ends: grounded(link.ends) }));
+  const own = axle.links.filter((link) => link.axis === axis);
+  const carriers = carriersOf(points, own);
+  const links = own.map((link) => ({ link, ends: grounded(link.ends.filter((end) => !carriers.has(end.point))) }));
   if (links.some(({ ends }) => ends.some((end) => end.point === GROUND)))
     points.push({ name: GROUND, axis, kind: 'road', inertia: null });
-  const place = new Map(points.map((own) => [own.name, { own, level: 0, lanes: [] }]));
+  const place = new Map(points.map((own) => [own.name, { own, level: 0, lanes: [], turns: [] }]));
+  carriers.forEach((mass, angle) => place.get(mass).turns.push(place.get(angle).own));
   assignLevels(place, links);
   for (let tries = 0; tries < points.length; tries += 1) {
     assignLanes(place, links);
@@ -17,6 +20,23 @@ function axleLayout(axle, axis) {
     raise(place, hidden);
   }
   return { place, links };
+}
+
+// The mass that turns by an angle: the only one that all links of the angle have in common, as in `body + a*pitch`. A link to a point of that mass
+// is drawn to the mass; any other angle is drawn as a part of its own.
+function carriersOf(points, links) {
+  const isMass = (name) => points.some((own) => own.name === name && own.kind === 'mass' && !own.angle);
+  const found = new Map();
+  for (const { name } of points.filter((own) => own.angle)) {
+    const others = links
+      .map(({ ends }) => ends.map((end) => end.point))
+      .filter((names) => names.includes(name))
+      .map((names) => names.filter((other) => other !== name));
+    if (!others.length || others.some((names) => names.length < 2)) continue;
+    const common = others[0].filter((other) => isMass(other) && others.every((names) => names.includes(other)));
+    if (common.length === 1) found.set(name, common[0]);
+  }
+  return found;
 }
 
 // A link with one end connects that end to the ground.

@@ -19,8 +19,10 @@ function limits(data) {
     data.kc.length ? null : 'There are no K&C curves, so friction and static stiffness were not compared.',
     data.track ? null : 'There are no cleat runs, so the rolling tyre was not compared.',
     ...data.discover.effects.map(unseen),
-    'Bodies move along z and x, without pitch and roll; only the rolling tyre couples the two directions.',
-    'Before an effect is added the model is linear on the rig: its parameters fit best at the fitted levels, and the other levels show how far that holds.',
+    motions(data),
+    data.axles.before.linear
+      ? 'Before an effect is added the model is linear on the rig: its parameters fit best at the fitted levels, and the other levels show how far that holds.'
+      : null,
     'The residual covers the sensors between the lowest and the highest frequency of the runs. Effects outside that band are not excluded.',
   ].filter((sentence) => sentence);
   return {
@@ -34,6 +36,18 @@ function limits(data) {
       ),
     ),
   };
+}
+
+// What the parts of the model do. Laws couple directions only in a nonlinear model.
+function motions({ axles, track: rolled }) {
+  const { points, linear } = axles.after || axles.before;
+  const moving = points.filter(({ kind }) => kind === 'mass' || kind === 'node');
+  const axes = [...new Set(moving.filter(({ angle }) => !angle).map(({ axis }) => axis))];
+  const turning = [...new Set(moving.filter(({ angle }) => angle).map(({ name }) => words(name)))];
+  if (!axes.length) return null;
+  const turns = turning.length ? ` and turn by ${turning.join(', ')} only` : ', without pitch and roll';
+  const coupled = axes.length > 1 && rolled && linear ? '; only the rolling tyre couples the directions' : '';
+  return `Bodies move along ${axes.join(' and ')}${turns}${coupled}.`;
 }
 
 function listed(names, sentence) {

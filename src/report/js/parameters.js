@@ -1,6 +1,6 @@
 // The fitted parameters: values, standard errors, correlations and why an error is unknown.
 
-function parameters({ fit, refitted, correlations: pairs }) {
+function parameters({ fit, refitted, correlations: pairs, other_minima: otherMinima }) {
   const own = Object.values(fit.parameters);
   const changed = refitted.length > 0;
   const rows = own.map((parameter) => {
@@ -18,7 +18,7 @@ function parameters({ fit, refitted, correlations: pairs }) {
     row.class = parameter.fitted ? null : 'still';
     return row;
   });
-  const ended = `${fit.converged ? 'Converged' : 'Did not converge'}: ${fit.stopped}. ${fit.minima.length ? fit.minima[0].starts : 0} of ${fit.starts} starts found this minimum, cost ${number(fit.cost)} (${number(fit.start_cost)} at the start values).`;
+  const ended = `${fit.converged ? 'Converged' : 'Did not converge'}: ${fit.stopped}.${searched(fit, otherMinima)}`;
   const element = section(
     'parameters',
     'Parameters',
@@ -47,6 +47,15 @@ function parameters({ fit, refitted, correlations: pairs }) {
     pairs.length ? details('All correlations', correlationMap(pairs)) : null,
   );
   return { element };
+}
+
+// Where the searches ended. `others` is the number of other minima of a fit to all runs as they are, null for a fit to transmissibilities, which
+// has a cost.
+function searched({ minima, starts, cost, start_cost: before }, others) {
+  const count = `${starts} ${starts === 1 ? 'start' : 'starts'}`;
+  if (others !== null) return ` ${count} found ${others || 'no'} other ${others > 1 ? 'minima' : 'minimum'}.`;
+  if (!minima.length) return '';
+  return ` ${minima[0].starts} of ${count} found this minimum, cost ${number(cost)} (${number(before)} at the start values).`;
 }
 
 function remark({ at_bound: bound, tied_to: tied, why_no_stderr: why, relative_stderr: relative, curve }) {

@@ -69,7 +69,7 @@ function optionsOf(own, place) {
   };
 }
 
-// Magnitude and phase over frequency, with further text on the ratio `below`.
+// Magnitude and phase over frequency of a ratio in the SI unit `unit`, with a further plot `below`.
 const FREQUENCY = {
   label: 'frequency',
   unit: 'Hz',
@@ -87,9 +87,10 @@ function labelled(ticks) {
   return ticks.filter(isRound).length > 1 ? isRound : isDigit;
 }
 
-function polarPlots(column, { curves, below, ...how }) {
+function polarPlots(column, { unit, curves, below, ...how }) {
+  const label = unit && unit !== '1' ? `magnitude re 1 ${pretty(unit)}` : 'magnitude';
   const parts = [
-    { y: { label: 'magnitude', unit: 'dB' }, curves: curves('magnitude') },
+    { y: { label, unit: 'dB' }, curves: curves('magnitude') },
     { y: { label: 'phase', unit: '°' }, height: 190, curves: curves('phase') },
     ...(below ? [below] : []),
   ];

@@ -94,7 +94,7 @@ function levelPlots(own, column) {
       label: runName(ratio.run),
       values: along(ratio.measured[part], ratio.frequency, at),
     }));
-  return polarPlots(column, { at, sync: 'rig', gaps: false, curves });
+  return polarPlots(column, { unit: own[0].unit, at, sync: 'rig', gaps: false, curves });
 }
 
 function ratioFigure(ratio) {
@@ -130,7 +130,7 @@ function ratioPlots(ratio, column) {
     curves: [{ role: 'measured', values: ratio.coherence }],
   };
   const curves = (part) => polarCurves(ratio, part);
-  return polarPlots(column, { at: ratio.frequency, sync: 'rig', curves, below: coherence });
+  return polarPlots(column, { unit: ratio.unit, at: ratio.frequency, sync: 'rig', curves, below: coherence });
 }
 
 function coherenceRange(u, low) {

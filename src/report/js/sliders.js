@@ -16,7 +16,7 @@ function noSliders() {
 }
 
 // Details that are closed until the reader opens them; only then are their figures made. `knobs` are `{name, unit, doc?, value,
-// range, gives}`, where `gives` returns the values of parameters; `ratios` are `{channel, frequency, turns?, curves}`, where
+// range, gives}`, where `gives` returns the values of parameters; `ratios` are `{channel, unit?, frequency, turns?, curves}`, where
 // `curves(part)` are fixed curves; `beside`, `{element, moved}`, is shown next to them and gets the value of every knob.
 function sliders({ says, knobs, ratios, beside }) {
   if (view.printing) return { element: null };
@@ -119,7 +119,7 @@ function triedFigure(ratio) {
 function triedPlots(ratio, given, column) {
   const tried = polar(ratio, given);
   const curves = (part) => [...ratio.curves(part), { role: 'tried', values: tried[part] }];
-  return polarPlots(column, { at: ratio.frequency, sync: 'tried', curves });
+  return polarPlots(column, { unit: ratio.unit, at: ratio.frequency, sync: 'tried', curves });
 }
 
 // The last curve of each plot is the one that moves; the shown range of frequencies stays.

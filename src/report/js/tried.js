@@ -25,8 +25,8 @@ function tried({ fit, refitted, rig: ratios }) {
   });
 }
 
-function triedRatio({ channel, frequency, measured: beside }) {
-  const ratio = { channel, frequency, turns: beside.phase };
+function triedRatio({ channel, unit, frequency, measured: beside }) {
+  const ratio = { channel, unit, frequency, turns: beside.phase };
   const found = polar(ratio, {});
   const curves = (part) => [
     { role: 'measured', values: beside[part] },

@@ -12,7 +12,7 @@ use crate::catalogue::{self, Loaded};
 use crate::failure::Failure;
 use crate::parameters;
 use crate::sensors;
-use crate::suspect_unit::{Statistics, suspicion};
+use crate::suspect_unit::{Statistics, gravity, suspicion};
 use crate::table::{Table, number};
 use crate::verbs::{fit, kc};
 
@@ -98,13 +98,14 @@ fn short_roads(campaign: &Campaign) -> Result<Vec<String>, InputError> {
     Ok(short.collect())
 }
 
-/// Sensors whose samples contradict their unit.
+/// Sensors whose samples contradict their unit or contain gravity.
 fn suspect_units(campaign: &Campaign) -> Result<Vec<String>, InputError> {
     let mut sentences = Vec::new();
     for run in campaign.runs.iter().filter(|run| run.test.sample_rate().is_some()) {
         let history = campaign.history(run)?;
         sentences.extend(history.signals.iter().filter_map(|(channel, samples)| {
-            let what = suspicion(channel.unit(), does(samples))?;
+            let of_motion = || gravity(channel.unit(), &does(samples)?);
+            let what = suspicion(channel.unit(), does(samples)).or_else(of_motion)?;
             Some(format!("{}, `{}`: {what}", run.name, channel.name))
         }));
     }

@@ -14,6 +14,7 @@ use super::sides::{Measured, Side, sides};
 use super::subject::Subject;
 use crate::failure::Failure;
 use crate::parameters::out_of_range;
+use crate::stability::unstable;
 use crate::verbs::simulate::guessed;
 
 /// A and B, and their differences.
@@ -71,6 +72,7 @@ pub(super) fn gather(subject: &Subject, arguments: &Arguments) -> Result<Compari
 fn odd_values(side: &Side) -> Vec<String> {
     let sentences = out_of_range(side.model.about(), side.values.as_slice()).into_iter();
     sentences
+        .chain(unstable(&*side.model, &side.values))
         .map(|sentence| format!("{}: {sentence}.", side.name))
         .collect()
 }

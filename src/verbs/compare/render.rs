@@ -93,13 +93,18 @@ fn modes(of: &[Pair]) -> String {
         "B_damping_%",
     ]);
     // Each side counts its own modes from the lowest, as the metrics `mode.N.frequency` do.
-    let count = |side: fn(&Pair) -> Option<&Shape>, pair: &Pair| {
-        let own = side(pair)?.frequency;
-        let lower = of.iter().filter_map(side).filter(|mode| mode.frequency < own);
-        Some((lower.count() + 1).to_string())
+    let count = |side: fn(&Pair) -> Option<&Shape>, place: usize| {
+        let own = side(&of[place])?.frequency;
+        let all = of.iter().enumerate();
+        let others = all.filter_map(|(at, pair)| Some((at, side(pair)?.frequency)));
+        let before = others.filter(|&(at, other)| other < own || other == own && at < place);
+        Some((before.count() + 1).to_string())
     };
-    for pair in of {
-        let numbers = [count(|pair| pair.a.as_ref(), pair), count(|pair| pair.b.as_ref(), pair)];
+    for (place, pair) in of.iter().enumerate() {
+        let numbers = [
+            count(|pair| pair.a.as_ref(), place),
+            count(|pair| pair.b.as_ref(), place),
+        ];
         let [first, second] = numbers.map(|number| number.unwrap_or("-".into()));
         let [a, b] = [&pair.a, &pair.b].map(|mode| mode.as_ref().map(|mode| (mode.frequency, mode.damping)));
         table.row(vec![
@@ -117,7 +122,11 @@ fn modes(of: &[Pair]) -> String {
 
 /// Number of differences between the models; `qcar diff` prints them.
 fn changes(of: &Comparison) -> String {
-    let line = |part: &qcar_dsl::difference::Part| format!("{} {}", part.changes.len(), part.heading);
+    // Headings are plurals, such as `parameters`.
+    let line = |part: &qcar_dsl::difference::Part| match part.changes.len() {
+        1 => format!("1 {}", part.heading.strip_suffix('s').unwrap_or(part.heading)),
+        count => format!("{count} {}", part.heading),
+    };
     let counts: Vec<String> = of.difference.parts.iter().map(line).collect();
     match counts.as_slice() {
         [] => String::new(),

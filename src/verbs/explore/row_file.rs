@@ -23,6 +23,9 @@ const ROWS_OF_THREAD: usize = 64;
 struct Failed {
     rows: usize,
     first: Option<(u64, String)>,
+    /// Rows in which a channel is infinite at the resonance of an undamped mode, and the first set with one.
+    infinite: usize,
+    first_infinite: Option<u64>,
 }
 
 /// Writes all missing rows of a part, and describes the file.
@@ -102,7 +105,7 @@ fn write<M: Model + ?Sized>(
         let (known, new) = numbers.split_at(known.min(numbers.len()));
         check_last(kept, known, columns.len(), path)?;
         sink.append(new)?;
-        failed.count(at, &found, columns.len());
+        failed.count(at, &found, columns);
         at = until;
         shown_rows(at);
     }
@@ -139,10 +142,23 @@ fn not_ours(path: &Path, found: &str) -> InputError {
 }
 
 impl Failed {
-    fn count(&mut self, first: u64, block: &[Rows], width: usize) {
+    fn count(&mut self, first: u64, block: &[Rows], columns: &[Column]) {
+        let width = columns.len();
+        let is_peak = |place: &usize| columns[*place].name.ends_with(".peak");
+        let peaks: Vec<usize> = (0..width - 1).filter(is_peak).collect();
+        // The height of such a peak is missing, its frequency is there.
+        let is_infinite = |row: &&[f64]| {
+            let mut pairs = peaks.iter().map(|&peak| [row[peak], row[peak + 1]]);
+            row[width - 1] == 0.0 && pairs.any(|[height, frequency]| height.is_nan() && frequency.is_finite())
+        };
         for (set, rows) in (first..).zip(block) {
             let failed = rows.numbers.chunks_exact(width).filter(|row| row[width - 1] != 0.0);
             self.rows += failed.count();
+            let infinite = rows.numbers.chunks_exact(width).filter(is_infinite).count();
+            self.infinite += infinite;
+            if infinite > 0 {
+                self.first_infinite.get_or_insert(set);
+            }
             if let (None, Some(reason)) = (&self.first, &rows.failure) {
                 self.first = Some((set, reason.clone()));
             }
@@ -155,12 +171,22 @@ fn notes(failed: &Failed, kept: &ExistingRows) -> String {
         0 => String::new(),
         rows => format!("note: {rows} of them existed already\n"),
     };
-    match &failed.first {
-        None => begun,
-        Some((set, reason)) => format!(
-            "{begun}note: {} of the rows computed now have no metrics; the first is set {set}: {}\n",
+    let has = |rows: usize| if rows == 1 { "has" } else { "have" };
+    let missing = failed.first.as_ref().map_or(String::new(), |(set, reason)| {
+        format!(
+            "note: {} of the rows computed now {} no metrics; the first is set {set}: {}\n",
             failed.rows,
+            has(failed.rows),
             reason.trim_end()
-        ),
-    }
+        )
+    });
+    let infinite = failed.first_infinite.map_or(String::new(), |set| {
+        format!(
+            "note: {} of the rows computed now {} no height of a peak, because a mode is undamped and its resonance \
+             infinite; the first is set {set}\n",
+            failed.infinite,
+            has(failed.infinite)
+        )
+    });
+    begun + &missing + &infinite
 }

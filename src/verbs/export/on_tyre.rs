@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use qcar_runtime::campaign::RoleNames;
 use qcar_runtime::error::InputError;
 use qcar_runtime::metric::Course;
 use qcar_runtime::model::Model;
@@ -15,7 +16,7 @@ use crate::catalogue::Loaded;
 use crate::export::fmu::OnTyre;
 use crate::failure::{Failure, flag};
 use crate::parameters::FileExtras;
-use crate::roads::RequestedRoad;
+use crate::roads::{RequestedRoad, check_rolls};
 
 /// Largest number of points of a profile, which are written as C source text.
 const POINTS: usize = 200_000;
@@ -30,6 +31,7 @@ pub(super) fn on_tyre(
     (model, values): (&Loaded, &Values),
     params: Option<&Path>,
 ) -> Result<OnTyre, Failure> {
+    check_rolls(model.about(), &RoleNames::default(), "--road")?;
     let course = asked.course()?;
     let (tyre, load) = vehicle((model, values), params)?;
     let road = profile(&course)?;

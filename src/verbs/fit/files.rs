@@ -9,6 +9,7 @@ use qcar_runtime::fit::Level;
 use qcar_runtime::fit::observation::Observation;
 use qcar_runtime::fit::report::ParameterFit;
 use qcar_runtime::response::ratio::Ratios;
+use qcar_runtime::response::unit::unit;
 
 use super::{Fitted, render};
 use crate::figure::{Across, Curve, Figure, Panel, Style};
@@ -53,6 +54,8 @@ pub(crate) struct Compared<'a> {
     pub level: &'a Level,
     /// Measured ratio.
     pub observation: &'a Observation,
+    /// SI unit of the ratio.
+    pub unit: String,
     /// The model at the start values.
     pub before: Vec<Complex<f64>>,
     /// The fitted model.
@@ -75,6 +78,7 @@ pub(crate) fn compare(of: &Fitted) -> Vec<Compared<'_>> {
     all.map(|(level, observation)| Compared {
         level,
         observation,
+        unit: unit(of.model.about(), &observation.channel),
         before: modelled(&mut first, level, observation),
         after: modelled(&mut last, level, observation),
     })
@@ -83,19 +87,23 @@ pub(crate) fn compare(of: &Fitted) -> Vec<Compared<'_>> {
 
 fn csv(of: &[Compared]) -> String {
     let frequency = units::heading("frequency", "Hz");
-    let mut out = format!("run,channel,{frequency},measured_re,measured_im,before_re,before_im,after_re,after_im\n");
+    let mut out =
+        format!("run,channel,unit,{frequency},measured_re,measured_im,before_re,before_im,after_re,after_im\n");
     for Compared {
         level,
         observation,
+        unit,
         before,
         after,
     } in of
     {
+        let shown = units::name(unit);
         for (line, frequency) in observation.frequency.iter().enumerate() {
             let frequency = units::value(*frequency, "Hz");
-            let _ = write!(out, "{},{},{frequency}", level.name, observation.channel.name);
+            let _ = write!(out, "{},{},{shown},{frequency}", level.name, observation.channel.name);
             for value in [observation.value[line], before[line], after[line]] {
-                let _ = write!(out, ",{},{}", value.re, value.im);
+                let [re, im] = [value.re, value.im].map(|part| units::value(part, unit));
+                let _ = write!(out, ",{re},{im}");
             }
             out.push('\n');
         }
@@ -121,7 +129,7 @@ fn panel(of: &Compared) -> Panel {
             .frequency
             .iter()
             .zip(values)
-            .map(|(f, value)| (*f, 20.0 * value.norm().log10()));
+            .map(|(f, value)| (*f, 20.0 * units::value(value.norm(), &of.unit).log10()));
         Curve {
             label,
             style,
@@ -130,7 +138,7 @@ fn panel(of: &Compared) -> Panel {
     };
     Panel {
         title: of.observation.channel.name.to_string(),
-        vertical: "dB".into(),
+        vertical: units::decibels(&of.unit),
         curves: vec![
             curve("measured", Style::Measured, &of.observation.value),
             curve("before", Style::Before, &of.before),

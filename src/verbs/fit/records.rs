@@ -6,6 +6,7 @@
 use qcar_runtime::campaign::Campaign;
 use qcar_runtime::fit::Plan;
 use qcar_runtime::fit::report::NOTEWORTHY;
+use qcar_runtime::least_squares::Stop;
 use qcar_runtime::model::About;
 
 use super::nonlinear::{self, Nonlinear};
@@ -54,6 +55,7 @@ pub(super) fn take_over(fitted: &mut Fitted, found: Nonlinear) {
     fit.all_correlations = correlations;
     (fit.stopped, fit.stopped_because) = (stop, stop.sentence());
     (fit.converged, fit.starts) = (stop.converged(), starts);
+    fitted.other_minima = (stop != Stop::NothingToFit).then_some(found.found.others.len());
     fit.minima.clear();
     fit.parameters = found.parameters;
     fitted.profiles = found.profiles;

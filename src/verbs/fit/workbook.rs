@@ -21,7 +21,7 @@ const RATIOS: &str = "Transmissibilities";
 /// Source of each curve, in the order of the columns.
 const SOURCES: [(&str, Pen); 3] = [("measured", MEASURED), ("before", BEFORE), ("after", AFTER)];
 /// First column of the magnitudes; the phases follow.
-const MAGNITUDES: u16 = 3;
+const MAGNITUDES: u16 = 4;
 /// Number of charts side by side, and rows and columns between them.
 const CHARTS: (usize, u32, u16) = (2, 16, 8);
 /// Decimals of decibels and degrees that are shown; a cell keeps them all.
@@ -102,9 +102,9 @@ fn channels(workbook: &mut Workbook, of: &Fitted) -> Result<(), XlsxError> {
 fn ratios(workbook: &mut Workbook, all: &[Compared]) -> Result<(), XlsxError> {
     let of_all = |unit: &'static str| SOURCES.map(|(source, _)| format!("{source} [{unit}]"));
     let headings = [
-        ["run".into(), "channel".into(), "frequency [Hz]".into()],
-        of_all("dB"),
-        of_all("deg"),
+        ["run", "channel", "unit", "frequency [Hz]"].map(String::from).to_vec(),
+        of_all("dB").to_vec(),
+        of_all("deg").to_vec(),
     ]
     .concat();
     let sheet = table(workbook, RATIOS, &headings, all.iter().flat_map(rows))?;
@@ -123,11 +123,13 @@ fn ratios(workbook: &mut Workbook, all: &[Compared]) -> Result<(), XlsxError> {
 fn rows<'a>(of: &'a Compared) -> impl Iterator<Item = Vec<Cell>> + 'a {
     let row = |(line, frequency): (usize, &f64)| {
         let values = [of.observation.value[line], of.before[line], of.after[line]];
-        let decibels = values.map(|value: Complex<f64>| Cell::from(20.0 * value.norm().log10()));
+        let shown = |value: Complex<f64>| units::value(value.norm(), &of.unit);
+        let decibels = values.map(|value| Cell::from(20.0 * shown(value).log10()));
         let degrees = values.map(|value| Cell::from(value.arg().to_degrees()));
         let named = [
             Cell::from(of.level.name.as_str()),
             (&*of.observation.channel.name).into(),
+            units::name(&of.unit).into(),
             (*frequency).into(),
         ];
         named.into_iter().chain(decibels).chain(degrees).collect()
@@ -151,7 +153,7 @@ fn chart(sheet: &mut Worksheet, place: usize, of: &Compared, rows: RangeInclusiv
     }
     chart
         .y_axis()
-        .set_name("magnitude [dB]")
+        .set_name(&format!("magnitude [{}]", units::decibels(&of.unit)))
         .set_crossing(ChartAxisCrossing::Min);
     let (beside, high, wide) = CHARTS;
     let (row, column) = ((place / beside) as u32 * high + 1, (place % beside) as u16 * wide);

@@ -91,8 +91,8 @@ const OF_ANGLES: [&str; 10] = [
     "rad", "mrad", "deg", "degree", "degrees", "°", "arcmin", "rpm", "rev", "U",
 ];
 
-const UNIT_OF_ANGLE: &str =
-    "its unit is that of an angle, which needs a unit of rad, deg or rpm and an angle of the model in its name";
+const UNIT_OF_ANGLE: &str = "its unit is that of an angle, which needs a unit of rad, deg or rpm";
+const ANGLE_OF_NOTHING: &str = "its unit is that of an angle, and no word in its name is an angle of the model";
 const NAME_OF_ANGLE: &str = "its name means an angle, and its unit is not that of one";
 const ANGLE_OF_MODEL: &str = "what its name says is an angle in the model, and its unit is not that of one";
 
@@ -119,7 +119,7 @@ impl Guess {
         let words = [words(&signal.name), words(&signal.source.group)].concat();
         let stated = quantity_of(&signal.unit);
         if is_of_angle(&signal.unit) {
-            return Guess::of_angle(&signal.unit, &words, about).ok_or(UNIT_OF_ANGLE);
+            return Guess::of_angle(&signal.unit, &words, about);
         }
         if stated.is_none() && !matches!(signal.unit.as_str(), "" | "-" | "1" | "V" | "mV") {
             return Err("its unit is not that of an acceleration, velocity, displacement or force");
@@ -148,16 +148,16 @@ impl Guess {
     }
 
     /// The sensor of an angle of the model, or of its rate or acceleration.
-    fn of_angle(unit: &str, words: &[String], about: &About) -> Option<Guess> {
-        let quantity = match in_si(unit)?.dimension {
-            [0, 0, 0] => Quantity::Displacement,
-            [0, 0, -1] => Quantity::Velocity,
-            [0, 0, -2] => Quantity::Acceleration,
-            _ => return None,
+    fn of_angle(unit: &str, words: &[String], about: &About) -> Result<Guess, &'static str> {
+        let quantity = match in_si(unit).map(|si| si.dimension) {
+            Some([0, 0, 0]) => Quantity::Displacement,
+            Some([0, 0, -1]) => Quantity::Velocity,
+            Some([0, 0, -2]) => Quantity::Acceleration,
+            _ => return Err(UNIT_OF_ANGLE),
         };
         let named = |angle: &&State| has_name(words, &angle.location);
-        let angle = angles(about).find(named)?;
-        Some(Guess {
+        let angle = angles(about).find(named).ok_or(ANGLE_OF_NOTHING)?;
+        Ok(Guess {
             location: angle.location.to_string(),
             drives: false,
             side: meaning(words, SIDES).unwrap_or("centre"),

@@ -58,6 +58,15 @@ impl Part {
 }
 
 impl Proposed {
+    /// Channels of a K&C curve, which need no sensor.
+    pub fn channels_of_curve(&self) -> impl Iterator<Item = &str> {
+        let names = match &self.kind {
+            Kind::Curve(displacement, force) => vec![displacement.as_str(), force],
+            Kind::Sweep(_) | Kind::Cleat | Kind::TimeHistory | Kind::Other => Vec::new(),
+        };
+        names.into_iter()
+    }
+
     /// The kind as text.
     pub fn description(&self) -> String {
         let when = self

@@ -62,6 +62,12 @@ impl Sensors {
         }
     }
 
+    /// Removes channels that a K&C curve takes from those without a sensor.
+    pub fn take_for_curves<'a>(&mut self, taken: impl Iterator<Item = &'a str>) {
+        let taken: BTreeSet<&str> = taken.collect();
+        self.others.retain(|(name, _)| !taken.contains(name.as_str()));
+    }
+
     fn pass(&mut self, source: String, why: String) {
         if !self.others.iter().any(|(name, _)| *name == source) {
             self.others.push((source, why));

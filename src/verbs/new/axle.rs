@@ -6,7 +6,8 @@ use qcar_dsl::source::Source;
 
 use super::{Named, must_be_new};
 use crate::failure::{Failure, flag};
-use crate::files::put;
+use crate::files::{put, write_new};
+use crate::terminal::word;
 
 /// Placeholder for the name in both templates.
 const PLACEHOLDER: &str = "NAME";
@@ -29,14 +30,18 @@ pub(super) fn run(arguments: &Arguments) -> Result<String, Failure> {
     );
     refuse_words_of_the_language(name, &model)?;
     let (model_file, values_file) = (format!("{name}.axle"), format!("{name}.toml"));
-    must_be_new(&dir.join(&model_file))?;
-    must_be_new(&dir.join(&values_file))?;
-    put(dir, &model_file, &model)?;
-    put(dir, &values_file, &values)?;
-    let (model, values) = (dir.join(model_file), dir.join(values_file));
-    let (model, values) = (model.display(), values.display());
+    let (model_path, values_path) = (dir.join(&model_file), dir.join(&values_file));
+    must_be_new(&model_path)?;
+    must_be_new(&values_path)?;
+    write_new(&[&model_path, &values_path], || {
+        put(dir, &model_file, &model)?;
+        put(dir, &values_file, &values)
+    })?;
+    let (model, values) = (word(&model_path), word(&values_path));
     Ok(format!(
-        "{model} and {values} written; try\n  qcar check {model}\n  qcar frf {model} --params {values}\n"
+        "{} and {} written; try\n  qcar check {model}\n  qcar frf {model} --params {values}\n",
+        model_path.display(),
+        values_path.display()
     ))
 }
 

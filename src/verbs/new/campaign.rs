@@ -6,15 +6,18 @@ use std::path::{Component, Path, PathBuf};
 
 use clap::Args;
 use clap_complete::engine::ArgValueCompleter;
+use qcar_runtime::campaign::RoleNames;
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::model::{About, Default, Parameter, StateKind};
+use qcar_runtime::roles::Roles;
 
 use super::{Named, must_be_new, records};
 use crate::catalogue;
 use crate::completion;
 use crate::failure::Failure;
-use crate::files::put;
+use crate::files::{put, write_new};
 use crate::table::number;
+use crate::terminal::word;
 
 /// Folders for the measured files of a car on a rig.
 const PARTS: [&str; 4] = ["rig", "kc", "cleat", "road"];
@@ -39,23 +42,28 @@ pub(super) fn run(arguments: &Arguments) -> Result<String, Failure> {
     let about = model.about();
     let seen = seen_from(&folder, &arguments.model, catalogue::is_shipped(&arguments.model));
     if records::suit(about) {
-        make(&folder.join(records::FOLDER))?;
         let text = make_head(name, &seen, about) + &records::sections(about);
-        put(&folder, "campaign.toml", &text)?;
-        return Ok(records::next_steps(&folder.display().to_string(), about));
+        write(&folder, &[records::FOLDER], &text)?;
+        return Ok(records::next_steps(&folder, about));
     }
-    for part in PARTS {
-        make(&folder.join(part))?;
-    }
-    put(&folder, "campaign.toml", &manifest(name, &seen, about))?;
-    let (folder, columns) = (folder.display(), columns(about).join(","));
+    write(&folder, &PARTS, &manifest(name, &seen, about))?;
+    let (command, columns) = (word(&folder), columns(about).join(","));
+    let folder = folder.display();
     Ok(format!(
         "{folder}/campaign.toml written. Now\n\
          1. export the sweeps of the rig to {folder}/rig/sweep_025.csv and sweep_100.csv, with the header line\n     \
          {columns}\n\
          2. give what is known of the vehicle, and correct values, sensors and runs in campaign.toml\n\
-         3. qcar fit {folder}\n"
+         3. qcar fit {command}\n"
     ))
+}
+
+/// The folder with these parts and its campaign.toml, or nothing.
+fn write(folder: &Path, parts: &[&str], manifest: &str) -> Result<(), InputError> {
+    write_new(&[folder], || {
+        parts.iter().try_for_each(|part| make(&folder.join(part)))?;
+        put(folder, "campaign.toml", manifest)
+    })
 }
 
 fn make(folder: &Path) -> Result<(), InputError> {
@@ -110,7 +118,9 @@ pub(in crate::verbs) fn make_head(name: &str, model: &str, about: &About) -> Str
         "# A campaign of measurements; docs/campaign-format.md describes it. A number without a unit is SI; paths are relative to this \
          folder.\nformat = 1\nname = {name:?}\ndescription = \"\"\nmodel = {model:?}\n"
     );
-    let rolling = if about.contact.is_some() { ROLLING } else { "" };
+    // Several tyres do not roll.
+    let rolls = about.contact.is_some() && Roles::of(about, &RoleNames::default()).is_ok();
+    let rolling = if rolls { ROLLING } else { "" };
     if !known.is_empty() || !rolling.is_empty() {
         out += "\n# Values known before any fit.\n[vehicle]\n";
     }

@@ -3,9 +3,12 @@
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
+use std::path::Path;
 
 use qcar_runtime::campaign::Quantity;
 use qcar_runtime::model::{self, About, InputKind, Output, SignalKind};
+
+use crate::terminal::word;
 
 /// Folder for the records.
 pub(super) const FOLDER: &str = "records";
@@ -17,14 +20,15 @@ pub(in crate::verbs) fn suit(about: &About) -> bool {
 }
 
 /// What to do with the new folder.
-pub(super) fn next_steps(folder: &str, about: &About) -> String {
+pub(super) fn next_steps(folder: &Path, about: &About) -> String {
+    let (command, folder) = (word(folder), folder.display());
     format!(
         "{folder}/campaign.toml written. Now\n\
          1. export a record for the fit to {folder}/{FOLDER}/run_1.csv and another one to check it to run_2.csv, with the \
          header line\n     {}\n\
          2. give what is known, and correct values, sensors and runs in campaign.toml\n\
-         3. qcar check {folder}\n\
-         4. qcar fit {folder}\n",
+         3. qcar check {command}\n\
+         4. qcar fit {command}\n",
         header(about)
     )
 }

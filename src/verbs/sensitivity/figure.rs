@@ -3,14 +3,17 @@
 use std::fmt::Write;
 
 use super::gather::{MetricResult, Sensitivity};
-use super::render::by_weight;
+use super::render::{by_weight, known};
 use crate::figure::{CSS, escaped, text};
 
 /// Number of bars of a tornado plot.
 const BARS: usize = 8;
-const PANEL: [f64; 2] = [330.0, 210.0];
+/// Width of a tornado plot without its names, and its height.
+const PANEL: [f64; 2] = [220.0, 210.0];
 const COLUMNS: usize = 3;
+/// Least width of the names of parameters, and the width of a letter of the longest name.
 const LABELS: f64 = 110.0;
+const LETTER: f64 = 7.0;
 const ROW: f64 = 20.0;
 /// Size of a cell of the heat map.
 const CELL: [f64; 2] = [64.0, 20.0];
@@ -19,10 +22,12 @@ const HEAD: f64 = 170.0;
 
 /// The figure as SVG.
 pub(super) fn svg(of: &Sensitivity) -> String {
+    let labels = labels(of);
+    let panel = [labels + PANEL[0], PANEL[1]];
     let rows = of.metrics.len().div_ceil(COLUMNS) as f64;
     let order = by_weight(of);
     let heat = HEAD + CELL[1] * order.len() as f64;
-    let width = (PANEL[0] * COLUMNS as f64).max(LABELS + 20.0 + CELL[0] * of.metrics.len() as f64);
+    let width = (panel[0] * COLUMNS as f64).max(labels + 20.0 + CELL[0] * of.metrics.len() as f64);
     let height = 40.0 + rows * PANEL[1] + heat + 20.0;
     let title = format!("{}: percent of a metric per percent of a parameter", of.subject);
     let mut out = format!(
@@ -33,21 +38,27 @@ pub(super) fn svg(of: &Sensitivity) -> String {
     text(&mut out, 10.0, 20.0, "start", "title", &title);
     for (at, metric) in of.metrics.iter().enumerate() {
         let (left, top) = (
-            PANEL[0] * (at % COLUMNS) as f64,
+            panel[0] * (at % COLUMNS) as f64,
             40.0 + PANEL[1] * (at / COLUMNS) as f64,
         );
         let _ = writeln!(out, "<g transform=\"translate({left} {top})\">");
-        tornado(&mut out, metric);
+        tornado(&mut out, metric, labels);
         out.push_str("</g>\n");
     }
     let _ = writeln!(out, "<g transform=\"translate(0 {})\">", 40.0 + rows * PANEL[1]);
-    heat_map(&mut out, of, &order);
+    heat_map(&mut out, of, &order, labels);
     out.push_str("</g>\n</svg>\n");
     out
 }
 
+/// Width of the names of all parameters.
+fn labels(of: &Sensitivity) -> f64 {
+    let letters = of.parameters.iter().map(|own| own.name.chars().count()).max();
+    LABELS.max(12.0 + LETTER * letters.unwrap_or(0) as f64)
+}
+
 /// A tornado plot: the parameters with the largest elasticities of a metric.
-fn tornado(out: &mut String, metric: &MetricResult) {
+fn tornado(out: &mut String, metric: &MetricResult, labels: f64) {
     let mut bars: Vec<&(String, f64)> = metric
         .elasticities
         .0
@@ -57,17 +68,17 @@ fn tornado(out: &mut String, metric: &MetricResult) {
     bars.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
     bars.truncate(BARS);
     let most = bars.first().map_or(1.0, |bar| bar.1.abs()).max(f64::MIN_POSITIVE);
-    text(out, LABELS, 12.0, "start", "title", &metric.name);
-    let middle = LABELS + (PANEL[0] - LABELS - 20.0) / 2.0;
+    text(out, labels, 12.0, "start", "title", &metric.name);
+    let middle = labels + (PANEL[0] - 20.0) / 2.0;
     for (at, (name, value)) in bars.iter().enumerate() {
         let y = 22.0 + ROW * at as f64;
-        let length = (PANEL[0] - LABELS - 90.0) / 2.0 * value.abs() / most;
+        let length = (PANEL[0] - 90.0) / 2.0 * value.abs() / most;
         let (x, class) = if *value < 0.0 {
             (middle - length, "down")
         } else {
             (middle, "up")
         };
-        text(out, LABELS - 6.0, y + 12.0, "end", "", name);
+        text(out, labels - 6.0, y + 12.0, "end", "", name);
         let _ = writeln!(
             out,
             "<rect class=\"{class}\" x=\"{x:.1}\" y=\"{y:.1}\" width=\"{length:.1}\" height=\"{}\"/>",
@@ -88,9 +99,9 @@ fn tornado(out: &mut String, metric: &MetricResult) {
 }
 
 /// A heat map: a row for each parameter, a column for each metric.
-fn heat_map(out: &mut String, of: &Sensitivity, order: &[usize]) {
+fn heat_map(out: &mut String, of: &Sensitivity, order: &[usize], labels: f64) {
     for (column, metric) in of.metrics.iter().enumerate() {
-        let x = LABELS + 10.0 + CELL[0] * (column as f64 + 0.5);
+        let x = labels + 10.0 + CELL[0] * (column as f64 + 0.5);
         let _ = writeln!(
             out,
             "<text transform=\"translate({:.1} {}) rotate(-60)\">{}</text>",
@@ -101,10 +112,10 @@ fn heat_map(out: &mut String, of: &Sensitivity, order: &[usize]) {
     }
     for (row, &k) in order.iter().enumerate() {
         let y = HEAD + CELL[1] * row as f64;
-        text(out, LABELS + 4.0, y + 14.0, "end", "", &of.parameters[k].name);
+        text(out, labels + 4.0, y + 14.0, "end", "", &of.parameters[k].name);
         for (column, metric) in of.metrics.iter().enumerate() {
-            let value = metric.elasticities.0[k].1;
-            let x = LABELS + 10.0 + CELL[0] * column as f64;
+            let Some(value) = known(metric, k) else { continue };
+            let x = labels + 10.0 + CELL[0] * column as f64;
             let _ = writeln!(
                 out,
                 "<rect class=\"{}\" fill-opacity=\"{:.2}\" x=\"{x:.1}\" y=\"{y:.1}\" width=\"{}\" height=\"{}\"/>",

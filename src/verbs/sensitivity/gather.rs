@@ -57,7 +57,8 @@ pub(crate) struct MetricResult {
     pub value: f64,
     /// Value in each run.
     pub values: Ordered<f64>,
-    /// For each parameter, percent of the metric per percent of the parameter.
+    /// For each parameter, percent of the metric per percent of the parameter; NaN if the metric is zero, or that of a
+    /// mode with the eigenvalue of another one.
     pub elasticities: Ordered<f64>,
     /// The same for each run and parameter.
     pub by_run: Ordered<Vec<f64>>,
@@ -116,7 +117,9 @@ pub(crate) fn gather(
     let sizes: Vec<usize> = groups.iter().map(Vec::len).collect();
     ground.choose(groups.concat());
     let moved = moved(subject, asked);
-    let local = elasticities(ground, &subject.values, &moved)?;
+    let mut local = elasticities(ground, &subject.values, &moved)?;
+    let mut notices = subject.notes.clone();
+    notices.extend(without_derivatives(ground, &subject.values, &mut local));
     let about = ground.about();
     let names: Vec<String> = moved.iter().map(|&k| about.parameters[k].name.to_string()).collect();
     let shown = &names[..asked.parameters.len()];
@@ -141,7 +144,7 @@ pub(crate) fn gather(
         runs: ground.courses().iter().map(|course| course.name.clone()).collect(),
         parameters: parameters(subject, asked, shown, ground),
         metrics,
-        notices: subject.notes.clone(),
+        notices,
         global: None,
     };
     if let Some((plan, spread)) = asked.global {
@@ -154,6 +157,21 @@ pub(crate) fn gather(
         add(&mut found, &own, spread);
     }
     Ok(found)
+}
+
+/// Removes the elasticities of modes with equal eigenvalues, which they do not have; a sentence on these.
+fn without_derivatives(ground: &Ground<'_>, values: &Values, local: &mut Elasticities) -> Option<String> {
+    let equal = ground.of_equal_modes(values);
+    let mut names = Vec::new();
+    for (at, reading) in ground.readings().iter().enumerate() {
+        if equal.contains(&reading.metric) {
+            local.elasticities[at].fill(f64::NAN);
+            local.slopes[at].fill(f64::NAN);
+            names.push(ground.metrics()[reading.metric].name.as_str());
+        }
+    }
+    let names = names.join(", ");
+    (!names.is_empty()).then(|| format!("{names}: modes with equal eigenvalues have no derivatives by parameters"))
 }
 
 /// The requested parameters, then all others with a known uncertainty: they contribute to the uncertainty of a metric
@@ -196,7 +214,9 @@ fn result(
             .clone()
             .map(|at| (run(at), local.elasticities[at][..shown.len()].to_vec()))
             .collect(),
-        uncertainty: uncertainty.map(|uncertainty| uncertain_metric(value, names, &uncertainty.of(&slopes))),
+        uncertainty: uncertainty
+            .filter(|_| slopes.iter().all(|slope| slope.is_finite()))
+            .map(|uncertainty| uncertain_metric(value, names, &uncertainty.of(&slopes))),
         sobol: None,
         spread: None,
     }

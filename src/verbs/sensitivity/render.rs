@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::gather::{MetricResult, Sensitivity, UncertainMetric};
-use crate::table::{Table, counted, noted, number};
+use crate::table::{Table, counted, noted, number, or_dash};
 use crate::units;
 
 /// As text for the terminal.
@@ -11,7 +11,13 @@ pub(super) fn text(of: &Sensitivity) -> String {
     let mut out = format!("{}: {}\n", of.subject, runs(of));
     out += &noted(&of.notices);
     if of.metrics.is_empty() {
-        return out + "It has no metric that could be measured on these runs.\n";
+        let why = match of.runs.is_empty() {
+            true => {
+                "No metric has a value: a mode must vibrate, a channel needs damping, and a ride needs a rolling tyre"
+            }
+            false => "It has no metric that could be measured on these runs",
+        };
+        return format!("{out}{why}.\n");
     }
     if of.parameters.is_empty() {
         return out
@@ -19,7 +25,7 @@ pub(super) fn text(of: &Sensitivity) -> String {
             + &values(of).text();
     }
     out += "Elasticities: percent of a metric per percent of a parameter, the largest first.\n\n";
-    out += &tables(of, |metric, k| number(metric.elasticities.0[k].1, 2));
+    out += &tables(of, |metric, k| or_dash(known(metric, k), 2));
     out += "\n";
     out += &values(of).text();
     if let Some(global) = &of.global {
@@ -37,6 +43,11 @@ pub(super) fn text(of: &Sensitivity) -> String {
         out += &tables(of, share);
     }
     out
+}
+
+/// The elasticity of a metric, if it has one.
+pub(super) fn known(metric: &MetricResult, k: usize) -> Option<f64> {
+    Some(metric.elasticities.0[k].1).filter(|own| own.is_finite())
 }
 
 fn failed(count: usize) -> String {
@@ -148,7 +159,7 @@ pub(super) fn csv(of: &Sensitivity) -> String {
                 parameter.name,
                 units::name(&parameter.unit),
                 units::value(parameter.value, &parameter.unit),
-                metric.elasticities.0[k].1,
+                optional(known(metric, k)),
                 optional(share),
                 optional(sobol.map(|sobol| sobol.first)),
                 optional(sobol.map(|sobol| sobol.total)),

@@ -2,7 +2,7 @@
 
 use qcar_runtime::campaign::RoleNames;
 use qcar_runtime::error::{InputError, Problem};
-use qcar_runtime::metric::{Course, Ground, Metric};
+use qcar_runtime::metric::{Course, Ground, Metric, MetricError};
 use qcar_runtime::model::About;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::roles::Roles;
@@ -130,6 +130,18 @@ pub(crate) fn usual(ground: &Ground<'_>, names: &RoleNames) -> Vec<usize> {
     all.filter(|(place, metric)| wanted(metric) && !ground.readings_of(*place).is_empty())
         .map(|(place, _)| place)
         .collect()
+}
+
+/// The metrics that have a value, and a notice on each that is infinite because a mode has no damping.
+pub(crate) fn without_infinite(ground: &Ground<'_>, values: &Values, metrics: Vec<usize>) -> (Vec<usize>, Vec<String>) {
+    let (mut finite, mut notices) = (Vec::new(), Vec::new());
+    for metric in metrics {
+        match ground.check_at_rest(values, metric) {
+            Err(error @ MetricError::Undamped { .. }) => notices.push(format!("left out: {error}")),
+            _ => finite.push(metric),
+        }
+    }
+    (finite, notices)
 }
 
 /// Parameters by name, without duplicates and without tied ones; without names, all that the model does not declare

@@ -7,6 +7,7 @@ use qcar_dsl::response::Wanted;
 use qcar_runtime::campaign::{Campaign, Role, RoleNames, Test};
 use qcar_runtime::metric::{Course, Ground};
 use qcar_runtime::response::parameters::Values;
+use qcar_runtime::roles::Roles;
 use qcar_runtime::simulate::{Cleat, tyre_of};
 use qcar_runtime::statics::contradictions;
 use qcar_runtime::tyre::Tyre;
@@ -14,7 +15,8 @@ use qcar_runtime::tyre::Tyre;
 use crate::catalogue::{self, Loaded};
 use crate::failure::{Failure, flag};
 use crate::parameters::{self, FileExtras, Setting, out_of_range};
-use crate::roads::{RequestedRoad, courses};
+use crate::roads::{RequestedRoad, check_rolls, courses};
+use crate::stability::unstable;
 use crate::verbs::fit::{self, Choices, nonlinear};
 
 /// A model with values on its tyre.
@@ -81,6 +83,9 @@ impl Subject {
     /// are roads but no tyre.
     pub fn of(text: &str, beneath: &SubjectOptions<'_>) -> Result<Self, Failure> {
         let mut subject = Self::over_cleats(text, beneath)?;
+        if !beneath.roads.is_empty() {
+            check_rolls(subject.model.about(), &subject.roles, &subject.name)?;
+        }
         if subject.tyre.is_none() && !beneath.roads.is_empty() {
             let found = "a road, and no tyre that could roll over it";
             let expected = "r_tire, static_tire_def and static_tire_load";
@@ -242,9 +247,15 @@ fn finish(
         .map(|(name, value)| (name.clone(), *value))
         .collect();
     let mut notes = out_of_range(model.about(), values.as_slice());
+    notes.extend(unstable(&*model, &values));
     notes.extend(campaign.iter().flat_map(|own| contradictions(model.about(), own)));
+    let roles = campaign
+        .as_ref()
+        .map_or_else(RoleNames::default, |own| own.roles.clone());
+    let rolls = Roles::of(model.about(), &roles).is_ok();
     let tyre = match (fact("r_tire"), fact("static_tire_def")) {
         (None, _) | (_, None) => None,
+        _ if !rolls => None,
         _ => Some(tyre_of(&fact, Path::new("[vehicle]"))?),
     };
     let measured = match (&tyre, &campaign) {
@@ -262,7 +273,7 @@ fn finish(
         values,
         vehicle: beyond,
         notes,
-        roles: campaign.map_or_else(RoleNames::default, |campaign| campaign.roles),
+        roles,
         tyre,
         courses,
         measured,

@@ -34,6 +34,8 @@ pub struct Contents<'a> {
     track: Option<Track<'a>>,
     records: Vec<Replayed>,
     correlations: &'a [Correlation],
+    /// Number of other minima of a fit to all runs as they are; `None` for a fit to transmissibilities.
+    other_minima: Option<usize>,
     gap_map: GapMap,
     kappa: Vec<Explanation>,
     refitted: Vec<Refitted>,
@@ -96,6 +98,7 @@ impl<'a> Contents<'a> {
             track: track(study),
             records: records(study),
             correlations: &study.fitted.fit.all_correlations,
+            other_minima: study.fitted.other_minima,
             gap_map: GapMap {
                 before: patches(study, &discovery.before.misfit.tiles),
                 after: patches(study, &discovery.after.misfit.tiles),

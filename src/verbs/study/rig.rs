@@ -19,6 +19,8 @@ pub struct Ratio {
     /// Role: `fit` or `held_out`.
     pub role: &'static str,
     channel: String,
+    /// SI unit of the ratio.
+    unit: String,
     /// True if it is part of the cost.
     fitted: bool,
     /// Frequencies, Hz.
@@ -77,6 +79,7 @@ fn together(of: &Compared, after: Option<&mut LevelResponses>) -> Ratio {
         run: level.name.clone(),
         role: if level.role == Role::Fit { "fit" } else { "held_out" },
         channel: observation.channel.name.to_string(),
+        unit: of.unit.clone(),
         fitted: observation.fitted && level.role == Role::Fit,
         frequency: curve(observation.frequency.iter().copied()),
         coherence: curve(observation.coherence.iter().copied()),

@@ -205,8 +205,12 @@ fn front_words(of: &Answer, front: &FrontAnswer) -> String {
         table.row(values.chain(own).chain([number(point.cost, 3)]).collect());
     }
     let designs = counted(front.points.len(), "design");
+    let none = match front.points.len() {
+        1 => "no other is better in every metric",
+        _ => "none is better than another in every metric",
+    };
     format!(
-        "\nFront of {designs}, of which none is better in every metric (means over the runs):\n\n{}",
+        "\nFront of {designs}: {none} (means over the runs):\n\n{}",
         table.text()
     )
 }

@@ -8,7 +8,7 @@ use super::prior::SIDE;
 use super::problem::Posterior;
 use super::refit::Refit;
 use crate::least_squares::information::{Information, Unseen};
-use crate::least_squares::{Outcome, Problem, gram};
+use crate::least_squares::{Outcome, Problem, Stop, gram};
 
 impl Posterior<'_> {
     /// Result of a search.
@@ -46,7 +46,11 @@ impl Posterior<'_> {
             unsteady: self.unsteady.clone(),
             nuisance: self.nuisance.clone(),
             evaluations: outcome.evaluations,
-            stop: outcome.stop,
+            // Errors of the sensors alone are no fit of the model.
+            stop: match outcome.stop {
+                stop if self.free.is_empty() && stop.converged() => Stop::NothingToFit,
+                stop => stop,
+            },
         }
     }
 

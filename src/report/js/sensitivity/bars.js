@@ -1,6 +1,21 @@
 // Bars from zero, one below the other: names on the left, values at their ends.
 
-const BARS = { width: 440, left: 136, right: 44, row: 20, top: 6, bottom: 34 };
+const BARS = { left: 136, bars: 260, right: 44, row: 20, top: 6, bottom: 34 };
+
+// Letters of the longest name that stands beside a figure, and the width of a letter.
+const LONGEST_NAME = 34;
+const LETTER = 6.8;
+
+// A name for a figure: the middle of a longer one is left out, because names differ at either end.
+function brief(name) {
+  const half = (LONGEST_NAME - 1) / 2;
+  return name.length > LONGEST_NAME ? `${name.slice(0, Math.floor(half))}…${name.slice(-Math.ceil(half))}` : name;
+}
+
+// The width of a column of names.
+function roomFor(names, least) {
+  return Math.max(least, 14 + LETTER * Math.max(0, ...names.map((name) => brief(name).length)));
+}
 
 // `rows` are `{name, value, said, role, inner?, interval?}`: an `inner` bar is a part of the whole one, an `interval` a line across its
 // end. `across` stands below the axis.
@@ -13,7 +28,8 @@ function bars(kind, name, rows, across) {
   const [low, high] = [Math.min(0, ...ends), Math.max(0, ...ends)];
   const isSigned = low < 0;
   // Room for values beyond the ends of the bars.
-  const [left, right] = [BARS.left + (isSigned ? BARS.right : 0), BARS.width - BARS.right];
+  const beside = roomFor(rows.map((row) => row.name), BARS.left);
+  const [left, right] = [beside + (isSigned ? BARS.right : 0), beside + BARS.bars];
   const floor = BARS.top + BARS.row * rows.length;
   const x = (value) => left + ((right - left) * (value - low)) / (high - low || 1);
   const label = (at, up, anchor, text) => svg('text', { x: at, y: up, 'text-anchor': anchor }, text);
@@ -37,7 +53,7 @@ function bars(kind, name, rows, across) {
       'g',
       {},
       svg('title', {}, `${row.name}: ${row.said}`),
-      label(BARS.left - 8, middle + 4, 'end', row.name),
+      label(beside - 8, middle + 4, 'end', brief(row.name)),
       bar(row.value, 12, middle, row.inner === undefined ? colour : `${colour};fill-opacity:0.35`),
       row.inner === undefined ? null : bar(Math.max(0, row.inner), 12, middle, colour),
       row.interval
@@ -56,7 +72,7 @@ function bars(kind, name, rows, across) {
     name,
     svg(
       'svg',
-      { class: 'plane', viewBox: `0 0 ${BARS.width} ${height}`, role: 'img', 'aria-label': `${name}: ${spoken}` },
+      { class: 'plane', viewBox: `0 0 ${right + BARS.right} ${height}`, role: 'img', 'aria-label': `${name}: ${spoken}` },
       ticks,
       svg('path', { d: `M${x(0)} ${BARS.top}V${floor}`, style: 'stroke:var(--muted)' }),
       body,

@@ -30,14 +30,15 @@ function matrix({ metrics, parameters }) {
 
 function cells(caption, metrics, names) {
   const [width, height] = MATRIX.cell;
-  const x = (column) => MATRIX.left + width * column;
+  const left = roomFor(names, MATRIX.left);
+  const x = (column) => left + width * column;
   const y = (row) => MATRIX.head + height * row;
   const head = (own, column) => {
     const [at, up] = [x(column) + width / 2, MATRIX.head - 8];
     return svg('text', { x: at, y: up, transform: `rotate(-40 ${at} ${up})` }, own.name);
   };
   const row = (name, at) => [
-    svg('text', { x: MATRIX.left - 8, y: y(at) + height - 6, 'text-anchor': 'end' }, name),
+    svg('text', { x: left - 8, y: y(at) + height - 6, 'text-anchor': 'end' }, brief(name)),
     metrics.map((own, column) => cell(own.elasticities[name], x(column), y(at), `${own.name} by ${name}`)),
   ];
   const size = [x(metrics.length) + MATRIX.right, y(names.length) + 6];

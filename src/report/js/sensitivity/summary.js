@@ -4,7 +4,9 @@ function summary(data) {
   const { metrics, parameters, runs } = data;
   const notices = data.notices.map((text) => h('p', { class: 'note caution' }, text));
   if (!metrics.length) {
-    const words = 'The model has no metric that could be measured on these runs.';
+    const words = runs.length
+      ? 'The model has no metric that could be measured on these runs.'
+      : 'No metric has a value: a mode must vibrate, a channel needs damping, and a ride needs a rolling tyre.';
     return { element: section('summary', 'Metrics', h('p', { class: 'lead' }, words), notices) };
   }
   const isUncertain = metrics.some((own) => own.uncertainty);

@@ -25,9 +25,15 @@ function front(data) {
     section(
       'front',
       'Front',
-      h('p', {}, `Of ${own.evaluated} designs these ${own.points.length} meet all targets and none is better in every metric; values are means over the runs. Rings are `, ringKey('before', 'today'), ' and ', ringKey('after', 'the design of least cost'), '.'),
+      h('p', {}, `${frontOf(own)}; values are means over the runs. Rings are `, ringKey('before', 'today'), ' and ', ringKey('after', 'the design of least cost'), '.'),
       h('div', { class: 'columns two' }, figures),
       details('Designs of the points', table('Designs of the front', columns, rows)),
     ),
   );
+}
+
+function frontOf({ evaluated, points }) {
+  return points.length === 1
+    ? `Of ${evaluated} designs this one meets all targets, and no other that does is better in every metric`
+    : `Of ${evaluated} designs these ${points.length} meet all targets, and none is better than another in every metric`;
 }

@@ -3,12 +3,13 @@
 use qcar_runtime::discover::select::Minimum;
 use qcar_runtime::fit::profile::ParameterProfile;
 use qcar_runtime::fit::report::{Correlation, ParameterFit};
+use qcar_runtime::least_squares::Stop;
 use serde::Serialize;
 
 use super::Nonlinear;
 use crate::json::{self, Ordered};
 use crate::sensor_residuals;
-use crate::table::{Table, noted, number};
+use crate::table::{Table, counted, noted, number};
 use crate::verbs::fit::{minima, render};
 
 /// Residuals above this number of standard deviations are significant: three of a normal distribution.
@@ -134,10 +135,20 @@ impl Nonlinear {
         if gap.held_out.is_finite() {
             out += &format!(", {} of the held-out runs", number(gap.held_out, 3));
         }
-        out += &format!("\n{} starts, {}\n", self.starts, self.other_minima());
+        out += "\n";
+        let is_fitted = refit.stop != Stop::NothingToFit;
+        if is_fitted {
+            out += &format!("{}, {}\n", counted(self.starts, "start"), self.other_minima());
+        }
         if gap.fit > MUCH {
-            out += "note: the residuals exceed the noise; the standard errors are therefore too small, and the model lacks \
-                    something (`qcar discover` looks for it)\n";
+            let errors = if is_fitted {
+                "the standard errors are therefore too small, and "
+            } else {
+                "these values are wrong, or "
+            };
+            out += &format!(
+                "note: the residuals exceed the noise; {errors}the model lacks something (`qcar discover` looks for it)\n"
+            );
         }
         out += &noted(&self.campaign.notices);
         let mut table = Table::new(["channel", "run", "left_%_of_signal"]);
@@ -175,10 +186,11 @@ impl Nonlinear {
             [] => "which found no other minimum".into(),
             [next, others @ ..] => {
                 let odds = number(next.log_odds, 2);
-                format!(
-                    "which found {} other minima; the log odds against the next are {odds}",
-                    1 + others.len()
-                )
+                let minima = match others.len() {
+                    0 => "1 other minimum".into(),
+                    more => format!("{} other minima", 1 + more),
+                };
+                format!("which found {minima}; the log odds against the next are {odds}")
             }
         }
     }

@@ -2,10 +2,19 @@
 
 use nalgebra::Complex;
 
-use super::Response;
-use super::parameters::Values;
-use super::ratio::{Ratio, between};
 use crate::model::{Model, Signal};
+use crate::modes::{damping, dynamics, frequency, vibrations};
+use crate::response::Response;
+use crate::response::parameters::Values;
+use crate::response::ratio::{Ratio, between};
+
+/// The highest peak of a ratio.
+pub(crate) enum Peak {
+    /// A peak that has a height.
+    Finite(Resonance),
+    /// The resonance of an undamped mode, whose height is infinite; its frequency, Hz.
+    Infinite(f64),
+}
 
 /// A peak, `[magnitude, frequency in Hz]`, and the derivatives of both by the leading parameters, with the positions of
 /// these.
@@ -36,7 +45,7 @@ pub(crate) fn highest<M: Model + ?Sized>(
     values: &Values,
     [numerator, denominator]: [&Signal; 2],
     wanted: bool,
-) -> Option<Resonance> {
+) -> Option<Peak> {
     let ratio = |frequency: &[f64], jacobian: bool| {
         let mut response = Response::new(survey.model, survey.excitation, frequency);
         if jacobian {
@@ -52,7 +61,11 @@ pub(crate) fn highest<M: Model + ?Sized>(
     // peak.
     let step = 3e-5 * at;
     let near = |at: f64, jacobian: bool| ratio(&[at - step, at, at + step], jacobian);
-    let [rise, bend] = shape(&near(at, false)?, step);
+    let about = near(at, false)?;
+    if let Some(frequency) = undamped(survey.model, values, &about, [at, step]) {
+        return Some(Peak::Infinite(frequency));
+    }
+    let [rise, bend] = shape(&about, step);
     let is_inside = at > BAND[0] * 1.001 && at < BAND[1] / 1.001 && bend < 0.0;
     // Near the peak, magnitudes agree to rounding long before the frequency is accurate, so the last steps search for
     // the root of the derivative.
@@ -70,10 +83,24 @@ pub(crate) fn highest<M: Model + ?Sized>(
         [by(1), shift]
     };
     let slopes = near.jacobian.iter();
-    Some(Resonance {
+    Some(Peak::Finite(Resonance {
         value: [size[1], at],
         slopes: slopes.map(|(parameter, slopes)| (*parameter, slope(slopes))).collect(),
-    })
+    }))
+}
+
+/// The frequency of the undamped mode whose resonance is a peak, Hz, given the ratio at the peak and a step to both
+/// sides of it; `None` if damping limits its height.
+fn undamped<M: Model + ?Sized>(model: &M, values: &Values, about: &Ratio, [at, step]: [f64; 2]) -> Option<f64> {
+    let [left, middle, right] = [0, 1, 2].map(|line| about.value[line].norm());
+    // The search came closer to the peak than a step. One that is not much higher than its sides is broad by damping,
+    // and the eigenvalues need not be computed.
+    if middle < 2.0 * left.max(right) {
+        return None;
+    }
+    let frequencies = vibrations(&dynamics(model, values.as_slice())).into_iter();
+    let mut undamped = frequencies.filter(|root| damping(*root) == 0.0).map(frequency);
+    undamped.find(|own| (own - at).abs() < step)
 }
 
 /// The frequency of the largest magnitude of a ratio, given over the whole band, to within the last refinement.
