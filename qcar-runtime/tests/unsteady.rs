@@ -304,7 +304,9 @@ fn worst_in_sd(model: &Strut, evidence: &Evidence) -> f64 {
         prediction.add(&added[prediction.series]);
         let series = &evidence.series[prediction.series];
         let errors = series.value.iter().zip(&prediction.value).zip(&series.sigma);
-        errors.fold(0.0, |worst: f64, ((seen, said), sigma)| worst.max((seen - said).norm() / sigma))
+        errors.fold(0.0, |worst: f64, ((seen, said), sigma)| {
+            worst.max((seen - said).norm() / sigma)
+        })
     };
     predicted.into_iter().map(of_series).fold(0.0, f64::max)
 }
@@ -315,12 +317,19 @@ fn worst_in_sd(model: &Strut, evidence: &Evidence) -> f64 {
 fn harmonics_are_as_uncertain_as_the_motion_before_the_record() {
     let (model, whole) = of_linear_axle(Quantity::Acceleration, 0.0);
     let mut whole = noisy(whole);
-    assert!(!whole.allow_for_starts(model, &values(model, 1.0)).expect("it has the sensors"));
+    assert!(
+        !whole
+            .allow_for_starts(model, &values(model, 1.0))
+            .expect("it has the sensors")
+    );
     let lost = (3.3 * RATE) as usize;
     let (model, cut) = evidence_from(PLAIN, (lost, 0.7));
     let before = noisy(cut);
     let mut cut = before.clone();
-    assert!(cut.allow_for_starts(&model, &values(&model, 1.0)).expect("it has the sensors"));
+    assert!(
+        cut.allow_for_starts(&model, &values(&model, 1.0))
+            .expect("it has the sensors")
+    );
     let [worst_before, worst_after] = [&before, &cut].map(|evidence| worst_in_sd(&model, evidence));
     assert!(worst_before > 10.0 && worst_after < 3.0, "{worst_before} {worst_after}");
     for (before, after) in before.series.iter().zip(&cut.series) {

@@ -29,7 +29,11 @@ pub(super) fn table(finding: &Finding, of: &BTreeMap<String, String>) -> String 
 /// Share of the residual of the judging runs that something explains, in words that follow its name.
 pub(super) fn share(explained: Option<f64>, judging: Role) -> String {
     match explained {
-        Some(share) => format!("explains {:.1} % of the residual of the {}", 100.0 * share, runs_of(judging)),
+        Some(share) => format!(
+            "explains {:.1} % of the residual of the {}",
+            100.0 * share,
+            runs_of(judging)
+        ),
         None => "has nothing to explain: the judging runs leave no residual above noise".into(),
     }
 }
@@ -43,12 +47,7 @@ fn runs_of(role: Role) -> &'static str {
 
 /// Place, share of the residual and parameters. `among` is the number of findings of the same answer, which
 /// explain that share together.
-pub(super) fn described(
-    finding: &Finding,
-    among: usize,
-    judging: Role,
-    of: &BTreeMap<String, String>,
-) -> String {
+pub(super) fn described(finding: &Finding, among: usize, judging: Role, of: &BTreeMap<String, String>) -> String {
     let others = match among {
         0 | 1 => "",
         2 => ", with the other effect,",

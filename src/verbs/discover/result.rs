@@ -195,7 +195,9 @@ fn limit(of: &DetectionLimit) -> Limit<'_> {
 /// The largest parts of a residual.
 fn parts(misfit: &Misfit, of: &Answer) -> Vec<ResidualPart> {
     let largest = misfit.tiles.iter().take(LISTED);
-    largest.map(|tile| part(tile, &of.evidence.runs[tile.run].name)).collect()
+    largest
+        .map(|tile| part(tile, &of.evidence.runs[tile.run].name))
+        .collect()
 }
 
 fn part(tile: &Tile, run: &str) -> ResidualPart {

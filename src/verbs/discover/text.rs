@@ -40,7 +40,11 @@ pub(super) fn text(of: &Answer) -> String {
     let certain = of.discovery.certain_and_alternatives().0.len();
     for (place, (finding, units)) in of.discovery.findings.iter().zip(&of.units).enumerate() {
         let among = if place < certain { certain } else { certain + 1 };
-        out += &format!("\n{}{}", choice(of, place), described(finding, among, of.evidence.judging(), units));
+        out += &format!(
+            "\n{}{}",
+            choice(of, place),
+            described(finding, among, of.evidence.judging(), units)
+        );
         // Effects of one set have the same rivals.
         let next = of.discovery.findings.get(place + 1);
         if next.is_none_or(|next| next.rivals != finding.rivals) {
@@ -179,7 +183,15 @@ fn unit_of_span(kind: Kind) -> &'static str {
 const LISTED: usize = 5;
 
 fn tiles(of: &Answer, misfit: &Misfit) -> String {
-    let mut table = Table::new(["channel", "run", "harmonic", "from", "to", "unit", "times_the_uncertainty"]);
+    let mut table = Table::new([
+        "channel",
+        "run",
+        "harmonic",
+        "from",
+        "to",
+        "unit",
+        "times_the_uncertainty",
+    ]);
     for tile in misfit.tiles.iter().take(LISTED) {
         let unit = unit_of_span(tile.kind);
         table.row(vec![
