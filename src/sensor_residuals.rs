@@ -6,7 +6,7 @@ use qcar_runtime::discover::posterior::{Explanation, SensorShare};
 use qcar_runtime::transmissibility::Point;
 use serde::Serialize;
 
-/// Residual of one sensor in one kind of run, on the runs that judge a model.
+/// Residual of one sensor in one kind of run.
 #[derive(Serialize)]
 pub(crate) struct SensorResidual {
     /// The sensor.
@@ -38,10 +38,10 @@ impl BeforeAfter {
     }
 }
 
-/// Residuals of every sensor in every kind of run, on the runs that judge a model.
+/// Residuals of every sensor in every kind of run, on the runs that judge a model, and on fitted ones of other kinds.
 /// Higher harmonics are left out, because they are small, and so are sensors that show nothing but noise.
 pub(crate) fn left(evidence: &Evidence, [before, after]: [&Explanation; 2]) -> Vec<SensorResidual> {
-    let [before, after] = [before, after].map(|of| of.misfit.sensor_shares(evidence, evidence.judging()));
+    let [before, after] = [before, after].map(|of| of.misfit.judged_sensor_shares(evidence));
     let left = |(before, after): (SensorShare, SensorShare)| SensorResidual {
         channel: channel(before.sensor),
         quantity: before.sensor.quantity.name(),

@@ -9,7 +9,7 @@ use clap::Args;
 use clap_complete::engine::ArgValueCompleter;
 use qcar_dsl::check::Checked;
 use qcar_dsl::patch::Patched;
-use qcar_runtime::campaign::{Campaign, Role};
+use qcar_runtime::campaign::Campaign;
 use qcar_runtime::discover::answer::{DetectionLimit, Discovery, Finding, Update, Verdict};
 use qcar_runtime::discover::candidate::Workshop;
 use qcar_runtime::discover::numbers::Numbers;
@@ -51,8 +51,13 @@ mod text;
 mod figure;
 // Notices about sensors and ranges.
 mod notices;
+// The side of the car whose sensor is wrong.
+mod wrong_side;
 // Results of a search that was stopped.
 mod unfinished;
+
+use finding::runs_of;
+use wrong_side::wrong_side;
 
 /// Find the effect that a campaign shows and its model lacks
 ///
@@ -281,6 +286,12 @@ pub(crate) fn answer(
         discovery.map_err(|error| Failure::Input(format!("{}: {error}\n", campaign.manifest().display())))?;
     let of_sensors = notices::of_sensors(&discovery, &evidence, bench.model().about());
     evidence.notices.extend(of_sensors);
+    let errors = discovery.findings.iter().flat_map(|finding| {
+        let signals = extended(&bench, finding).map_or_else(Vec::new, |patched| patched.signals);
+        signals.into_iter().map(move |error| (finding, error))
+    });
+    let of_sides = errors.filter_map(|(finding, error)| wrong_side(finding, &error, campaign));
+    evidence.notices.extend(of_sides);
     evidence.notices.extend(notices::on_ranges(&discovery, campaign));
     evidence.notices.extend(outside);
     // Without sweeps that the model can be compared with, there are no places.
@@ -355,12 +366,8 @@ fn units(mut bench: Bench, discovery: &Discovery) -> Vec<BTreeMap<String, String
 /// The model with the findings; `None` unless the verdict is `Found`.
 fn found(bench: Bench, discovery: &Discovery, evidence: &Evidence) -> Option<ExtendedModel> {
     let [before, after] = [&discovery.before, &discovery.after].map(|of| of.misfit.judged(evidence));
-    let runs = match evidence.judging() {
-        Role::HeldOut => "held-out",
-        Role::Fit => "fitted",
-    };
-    let why =
-        format!("Evidence: the RMS residual of {runs} runs fell from {before:.2} to {after:.2} standard deviations.");
+    let runs = runs_of(evidence.judging());
+    let why = format!("Evidence: the RMS residual of {runs} fell from {before:.2} to {after:.2} standard deviations.");
     match discovery.verdict {
         Verdict::Found => patched(bench, &discovery.findings, &why),
         _ => None,

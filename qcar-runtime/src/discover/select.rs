@@ -306,13 +306,14 @@ fn next(sets: &[Set], evidence: &Evidence) -> Option<usize> {
 }
 
 /// True if a set may have one more effect. A third one is tried only if the first two explain most of the excess residual,
-/// since otherwise the catalogue has no answer, and if they still miss a sensor or need sensors less accurate than their
-/// data sheets: a wrong gain may be the third.
+/// since otherwise the catalogue has no answer, and if they still miss a sensor, in held-out or in fitted runs, or need
+/// sensors less accurate than their data sheets: a wrong gain may be the third.
 fn may_grow(sets: &[Set], set: usize, evidence: &Evidence) -> bool {
     let own = &sets[set];
     let effects = own.names().len();
     let explains = || explained_share(&sets[best_base(sets)], own, evidence) >= GREATER_PART;
-    let misses = || misses_a_sensor(own, evidence, evidence.judging()) || own.has_inaccurate_sensors();
+    let misses_in = |role: Role| misses_a_sensor(own, evidence, role);
+    let misses = || misses_in(Role::HeldOut) || misses_in(Role::Fit) || own.has_inaccurate_sensors();
     effects < 2 || effects < MOST_EFFECTS && explains() && misses()
 }
 

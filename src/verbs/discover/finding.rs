@@ -38,7 +38,8 @@ pub(super) fn share(explained: Option<f64>, judging: Role) -> String {
     }
 }
 
-fn runs_of(role: Role) -> &'static str {
+/// The runs of a role, in words.
+pub(super) fn runs_of(role: Role) -> &'static str {
     match role {
         Role::Fit => "fitted runs",
         Role::HeldOut => "held-out runs",

@@ -47,7 +47,7 @@ pub(super) fn is_partly_explained(of: &Answer) -> bool {
 /// a usual model error; `None` without such a sensor.
 fn largest_residual(of: &Answer) -> Option<SensorShare<'_>> {
     let misfit = &of.discovery.after.misfit;
-    let shares = misfit.sensor_shares(&of.evidence, of.evidence.judging());
+    let shares = misfit.judged_sensor_shares(&of.evidence);
     let large = shares.into_iter().filter(|share| share.is_large(&of.evidence.numbers));
     large.max_by(|a, b| a.missed().total_cmp(&b.missed()))
 }

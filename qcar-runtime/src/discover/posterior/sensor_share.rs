@@ -62,6 +62,21 @@ impl Misfit {
         }
         shares
     }
+
+    /// The shares on the judging runs, followed by those of kinds of runs that are fitted and not among the judging runs,
+    /// such as K&C curves.
+    pub fn judged_sensor_shares<'a>(&self, evidence: &'a Evidence) -> Vec<SensorShare<'a>> {
+        let mut shares = self.sensor_shares(evidence, evidence.judging());
+        for own in self.sensor_shares(evidence, Role::Fit) {
+            if !shares
+                .iter()
+                .any(|other| (other.sensor, other.kind) == (own.sensor, own.kind))
+            {
+                shares.push(own);
+            }
+        }
+        shares
+    }
 }
 
 /// Sums of squares of one series: of its residuals, of the noise in them, and of its signal. The mean of a record is an
