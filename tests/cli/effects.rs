@@ -30,6 +30,22 @@ fn a_patched_file_is_a_model_that_differs_in_the_effect_alone() {
     );
 }
 
+/// A patched model without its gain would look like one that has it.
+#[test]
+fn an_error_of_a_sensor_says_that_no_equation_contains_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("gain.axle");
+    let note = "an error of a sensor changes what is measured, not the equations of motion: correct the channel in the \
+                campaign";
+    let place = ["patch", "axle_c", "sensor_gain", "--at", "body"];
+    let said = succeeds(&[&place[..], &["--out", file.to_str().unwrap()]].concat());
+    assert!(said.contains(&format!("note: {note}")), "{said}");
+    let text = std::fs::read_to_string(&file).unwrap();
+    assert!(text.contains(&format!("// {note}\n")), "{text}");
+    let friction = succeeds(&["patch", "axle_c", "coulomb_friction", "--at", "damper"]);
+    assert!(!friction.contains("error of a sensor"), "{friction}");
+}
+
 #[test]
 fn starts_follow_the_parameters_of_the_campaign() {
     let campaign = "models/campaigns/axle_a_rig";

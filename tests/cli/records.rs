@@ -803,7 +803,10 @@ fn bounds_and_spans_of_time_are_told_as_such() {
     assert!(file.lines().any(told), "{file}");
     assert_eq!(answer["at_bound"], serde_json::json!({"c_body": "upper"}), "{answer}");
     let (said, _) = with_spring(600.0);
-    let mut lines = said.lines().skip_while(|line| !line.starts_with("largest residuals")).skip(1);
+    let mut lines = said
+        .lines()
+        .skip_while(|line| !line.starts_with("largest residuals"))
+        .skip(1);
     let heading: Vec<&str> = lines.next().unwrap().split_whitespace().collect();
     let first: Vec<&str> = lines.next().unwrap().split_whitespace().collect();
     assert_eq!((heading[5], first[5]), ("unit", "s"), "{said}");
