@@ -15,22 +15,25 @@ const LEFT: f64 = 1e-6;
 /// An eigenvector of each of these eigenvalues. Those of equal eigenvalues are linearly independent, and each of them
 /// is zero where it can be, so that parts which do not act on each other move one at a time.
 pub(crate) fn eigenvectors(a: &Ordered, roots: &[Complex<f64>]) -> Vec<DVector<Complex<f64>>> {
-    let vector = |(place, root): (usize, &Complex<f64>)| {
-        let equal: Vec<usize> = (0..roots.len())
-            .filter(|&other| are_equal(roots[other], *root))
-            .collect();
-        let number = equal.iter().position(|&other| other == place);
-        let independent = if equal.len() > 1 {
-            independent(a, *root, equal.len())
-        } else {
-            None
-        };
-        match (independent, number) {
-            (Some(mut vectors), Some(number)) => vectors.swap_remove(number),
-            _ => eigenvector(a, *root),
+    let mut vectors: Vec<Option<DVector<Complex<f64>>>> = vec![None; roots.len()];
+    for (place, root) in roots.iter().enumerate() {
+        if vectors[place].is_some() {
+            continue;
         }
-    };
-    roots.iter().enumerate().map(vector).collect()
+        let is_equal = |other: &usize| vectors[*other].is_none() && are_equal(roots[*other], *root);
+        let equal: Vec<usize> = (place..roots.len()).filter(is_equal).collect();
+        let alone = || equal.iter().map(|&other| eigenvector(a, roots[other])).collect();
+        let own = if equal.len() > 1 {
+            independent(a, *root, equal.len()).unwrap_or_else(alone)
+        } else {
+            alone()
+        };
+        equal
+            .iter()
+            .zip(own)
+            .for_each(|(&other, vector)| vectors[other] = Some(vector));
+    }
+    vectors.into_iter().flatten().collect()
 }
 
 /// True if two eigenvalues differ by no more than rounding.
