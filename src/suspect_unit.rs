@@ -1,11 +1,10 @@
 //! Units that the samples of a channel contradict; the engineer decides.
 
+use qcar_runtime::statics::GRAVITY;
 use qcar_signals::si::{in_si, is_known};
 
 /// A body at rest has an acceleration of 1 g if gravity is not subtracted: tolerance of the mean, relative to 1 g.
 const ABOUT_ONE: f64 = 0.05;
-/// Standard gravity, m/s².
-const GRAVITY: f64 = 9.80665;
 /// Largest plausible suspension travel, m.
 const TRAVEL: f64 = 1.0;
 

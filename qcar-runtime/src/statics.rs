@@ -6,7 +6,7 @@ use crate::proportion::is_alike;
 use crate::shown::{rounded, shown};
 
 /// Standard gravity, m/s^2, where a campaign gives none.
-const GRAVITY: f64 = 9.80665;
+pub const GRAVITY: f64 = 9.80665;
 /// Dimension of a stiffness, N/m.
 const STIFFNESS: [i32; 3] = [1, 0, -2];
 
