@@ -3,7 +3,7 @@
 use qcar_dsl::patch::{Signal, SignalChange};
 use qcar_runtime::campaign::{Campaign, Channel, History, Quantity, Side};
 use qcar_runtime::discover::answer::Finding;
-use qcar_runtime::mean::mean_square;
+use qcar_runtime::mean::{mean, mean_square};
 
 use crate::table::number;
 
@@ -38,7 +38,8 @@ pub(super) fn wrong_side(finding: &Finding, error: &SignalChange, campaign: &Cam
     ))
 }
 
-/// RMS of the sensors of both sides over all runs that recorded both, of the first quantity that has both sides.
+/// RMS of the sensors of both sides, without their offsets, over all runs that recorded both, of the first quantity
+/// that has both sides.
 fn levels(histories: impl Iterator<Item = History>, is_it: impl Fn(&Channel) -> bool) -> Option<(Channel, [f64; 2])> {
     let mut found: Option<(Channel, [f64; 2])> = None;
     for history in histories {
@@ -54,7 +55,10 @@ fn levels(histories: impl Iterator<Item = History>, is_it: impl Fn(&Channel) -> 
         let Some((_, right_samples)) = of_side(Side::Right, Some(left.quantity)) else {
             continue;
         };
-        let squares = [left_samples, right_samples].map(mean_square);
+        let squares = [left_samples, right_samples].map(|samples| {
+            let offset = mean(samples);
+            mean_square(samples.iter().map(|sample| sample - offset))
+        });
         let (_, sums) = found.get_or_insert((left.clone(), [0.0; 2]));
         (0..2).for_each(|side| sums[side] += squares[side]);
     }
@@ -67,7 +71,7 @@ mod tests {
 
     use super::*;
 
-    /// A sweep whose left sensor reads more than the right one by this factor.
+    /// A sweep whose left sensor reads more than the right one by this factor, and has an offset.
     fn campaign(folder: &std::path::Path, factor: f64) -> Campaign {
         let channel = |name: &str, location: &str, side: &str| {
             format!(
@@ -83,7 +87,11 @@ mod tests {
         fs::write(folder.join("campaign.toml"), format!("{head}{channels}{run}")).unwrap();
         let row = |k: usize| {
             let reading = (k as f64).sin();
-            format!("{:.2},{reading},{},{reading}\n", 0.01 * k as f64, factor * reading)
+            format!(
+                "{:.2},{reading},{},{reading}\n",
+                0.01 * k as f64,
+                0.5 + factor * reading
+            )
         };
         let rows: String = (0..200).map(row).collect();
         fs::write(folder.join("sweep.csv"), format!("time,pad_z,a,b\n{rows}")).unwrap();
