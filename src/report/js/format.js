@@ -10,11 +10,20 @@ function number(value, digits = 3) {
   }
   const rounded = Number(value.toPrecision(digits));
   const decimals = size === 0 ? 0 : Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
-  return minus(
-    rounded
-      .toLocaleString('en-GB', { minimumFractionDigits: Math.min(decimals, 6), maximumFractionDigits: 6 })
-      .replace(/,/g, '\u202f'),
-  );
+  return grouped(rounded, Math.min(decimals, 6), 6);
+}
+
+// Formats by their least and most decimals. A page writes thousands of numbers, and to make a format takes as long as to
+// write hundreds of them.
+const FORMATS = new Map();
+
+// With thin spaces between thousands.
+function grouped(value, minimumFractionDigits, maximumFractionDigits) {
+  const key = `${minimumFractionDigits} ${maximumFractionDigits}`;
+  if (!FORMATS.has(key)) {
+    FORMATS.set(key, new Intl.NumberFormat('en-GB', { minimumFractionDigits, maximumFractionDigits }));
+  }
+  return minus(FORMATS.get(key).format(value).replace(/,/g, '\u202f'));
 }
 
 // The same without trailing zeros, for given values as opposed to measured ones.
@@ -59,12 +68,7 @@ function measured(value, error, unit) {
   const power = size !== 0 && isLong ? Math.floor(Math.log10(size)) : 0;
   const [own, off] = [scaled.value, error * scaled.factor].map((x) => x / 10 ** power);
   const shown = Math.min(MOST_PLACES, places(off));
-  const fixed = (x) =>
-    minus(
-      Number(x.toFixed(shown))
-        .toLocaleString('en-GB', { minimumFractionDigits: shown, maximumFractionDigits: shown })
-        .replace(/,/g, '\u202f'),
-    );
+  const fixed = (x) => grouped(Number(x.toFixed(shown)), shown, shown);
   const both = `${fixed(own)} ± ${fixed(off)}`;
   const text = power ? `(${both})·10${superscript(power)}` : both;
   return withUnit(text, scaled.unit);

@@ -30,14 +30,14 @@ function heatMap([role, caption], tiles, readout) {
 
 // Positions of rows and tiles.
 function heatScene(tiles) {
-  const rowOf = (tile) => `${tile.channel} ${runText(tile)}`;
+  const names = new Map(tiles.map((tile) => [tile, `${tile.channel} ${runText(tile)}`]));
   const sorted = [...tiles].sort(byRow);
-  const rows = [...new Map(sorted.map((tile) => [rowOf(tile), tile])).values()];
-  const places = new Map(rows.map((tile, at) => [rowOf(tile), at]));
+  const rows = [...new Map(sorted.map((tile) => [names.get(tile), tile])).values()];
+  const places = new Map(rows.map((tile, at) => [names.get(tile), at]));
   const cell = rows.length > 24 ? 15 : 19;
   const share = scale(tiles);
   const x = (value) => HEAT_AREA.left + share(value) * HEAT_AREA.width;
-  const rowAt = (tile) => places.get(rowOf(tile));
+  const rowAt = (tile) => places.get(names.get(tile));
   const box = (tile) => ({
     x: x(tile.span[0]),
     y: HEAT_AREA.top + rowAt(tile) * cell,
