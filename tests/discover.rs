@@ -8,6 +8,7 @@ mod swept;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
+use std::sync::LazyLock;
 
 use qcar_blind::hardware::Flaw;
 use qcar_blind::hidden::Hidden;
@@ -69,18 +70,13 @@ fn a_low_pass_filter_is_a_delay_and_nothing_else() {
 #[test]
 fn an_effect_is_seen_from_the_size_on_that_is_told() {
     let with = |c_drag: f64| {
-        let folder = tempfile::tempdir().expect("a folder");
-        let campaign = folder.path().join("campaign");
-        let order = Order {
-            programme: two_short_sweeps(),
-            cleats: false,
-            effects: vec![Hidden::new("drag_to_ground", "body", &[("c_drag", c_drag)])],
-            ..Order::clean("c", 31)
-        };
-        make(order, &campaign).expect("a campaign");
-        discover(&campaign, None)
+        of_short_sweeps(
+            "c",
+            SEED_OF_CLEAN,
+            Hidden::new("drag_to_ground", "body", &[("c_drag", c_drag)]),
+        )
     };
-    let clean = with(0.0);
+    let (_, clean) = &*CLEAN;
     assert_eq!(clean["verdict"], "none");
     let visible = clean["visible"].as_array().expect("effects");
     let drag = visible
@@ -93,6 +89,15 @@ fn an_effect_is_seen_from_the_size_on_that_is_told() {
     let seen = with(2.0 * limit);
     assert_eq!(seen["effects"][0]["name"], "drag_to_ground", "{seen}");
 }
+
+const SEED_OF_CLEAN: u64 = 31;
+
+/// A campaign of short sweeps in which nothing is hidden, and the answer to it: made once for several tests.
+static CLEAN: LazyLock<(Order, Value)> = LazyLock::new(|| {
+    let order = short_sweeps("c", SEED_OF_CLEAN, vec![]);
+    let answer = answer_to(order.clone());
+    (order, answer)
+});
 
 /// What a study of a shipped campaign has found.
 fn studied(campaign: &str) -> Value {
@@ -111,21 +116,43 @@ fn measured(name: &str) -> Value {
     discover(&campaigns.join(name), None)
 }
 
-/// Published: Fc 20.39 N (Janot, Gautier and Brunot 2019).
+/// Half of each record, which takes a third of the time: the answer is that to the whole records.
 #[test]
 fn dry_friction_is_named_in_a_real_drive() {
-    let answer = measured("emps");
+    let folder = tempfile::tempdir().expect("a folder");
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/campaigns/emps");
+    for run in ["first.csv.gz", "second.csv.gz"] {
+        fs::copy(shipped.join(run), folder.path().join(run)).expect("a record");
+    }
+    let manifest = fs::read_to_string(shipped.join("campaign.toml")).expect("it is shipped");
+    let parts: Vec<&str> = manifest.split("[[run]]").collect();
+    let [head, first, second] = parts[..] else {
+        panic!("two runs: {manifest}")
+    };
+    let half = |run: &str, from: f64| format!("[[run]]{}\nfrom = {from:?}\nto = {:?}\n\n", run.trim_end(), from + 6.2);
+    let halves = [head.to_owned(), half(first, 0.0), half(second, 12.471)].concat();
+    fs::write(folder.path().join("campaign.toml"), halves).expect("a manifest");
+    is_published_friction(&discover(folder.path(), None));
+}
+
+#[test]
+#[ignore = "a whole search; .ci/run runs it"]
+fn dry_friction_is_estimated_well_in_a_real_drive() {
+    let error = is_published_friction(&measured("emps"));
+    assert!(error < 1.0, "{error} N");
+}
+
+/// Published: Fc 20.39 N (Janot, Gautier and Brunot 2019). The standard error, in N.
+fn is_published_friction(answer: &Value) -> f64 {
     assert_eq!(answer["verdict"], "found", "{answer}");
     let effects = answer["effects"].as_array().expect("effects");
     assert_eq!(effects.len(), 1, "{answer}");
     assert_eq!(effects[0]["name"], "coulomb_friction", "{answer}");
     let [friction, error] = ["parameters", "stderr"].map(|of| effects[0][of]["f_coulomb"].as_f64().expect("a number"));
-    assert!(
-        (friction - 20.39).abs() < 2.0 * error && error < 1.0,
-        "{friction} ± {error} N"
-    );
+    assert!((friction - 20.39).abs() < 2.0 * error, "{friction} ± {error} N");
     let held_out = answer["gap"]["held_out"]["after"].as_f64().expect("a number");
     assert!(held_out < 1.0, "{held_out}");
+    error
 }
 
 /// The force of a magnetorheological damper saturates at low speed, as friction does, and a spring in series gives it
@@ -238,25 +265,29 @@ fn a_damper_that_is_harder_in_rebound_is_found() {
 /// A fit of a model that brings its effect along, which the campaign knows nothing of.
 #[test]
 fn a_model_that_has_the_effect_already_lacks_nothing() {
-    let campaign = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/campaigns/axle_c_study");
     let folder = tempfile::tempdir().expect("a folder");
-    let model = folder.path().join("patched.axle");
+    let [campaign, model] = ["campaign", "patched.axle"].map(|name| folder.path().join(name));
+    let mass = [
+        ("m_pwt", 70.0),
+        ("k_pwt_z", 280e3),
+        ("c_pwt_z", 500.0),
+        ("k_pwt_x", 3e5),
+        ("c_pwt_x", 400.0),
+    ];
+    make(
+        short_sweeps("c", 22, vec![Hidden::new("suspended_mass", "body", &mass)]),
+        &campaign,
+    )
+    .expect("a campaign");
     let patch = ["patch", "axle_c", "suspended_mass", "--at", "body", "--out"];
     let patched = Command::new(env!("CARGO_BIN_EXE_qcar"))
         .args(patch)
         .arg(&model)
         .output();
     assert!(patched.expect("qcar runs").status.success());
-    let output = Command::new(env!("CARGO_BIN_EXE_qcar"))
-        .arg("discover")
-        .arg(&campaign)
-        .arg("--model")
-        .arg(&model)
-        .args(["--format", "json"])
-        .output()
-        .expect("qcar runs");
-    let answer: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let answer = discover_with(&campaign, &["--model", model.to_str().expect("a path of letters")]);
     assert_eq!(answer["verdict"], "none", "{answer}");
+    assert!(answer["gap"]["held_out"]["before"].as_f64() < Some(1.5), "{answer}");
 }
 
 #[test]
@@ -461,6 +492,11 @@ fn edit(folder: &Path, change: impl Fn(&str) -> String) {
     fs::write(file, change(&text)).expect("it is there");
 }
 
+/// The first run alone.
+fn one_run(manifest: &str) -> String {
+    manifest.split("[[run]]").take(2).collect::<Vec<_>>().join("[[run]]")
+}
+
 /// What is said of a campaign that `discover` refuses.
 fn refusal(campaign: &Path) -> String {
     let mut command = Command::new(env!("CARGO_BIN_EXE_qcar"));
@@ -541,6 +577,7 @@ fn a_sensor_that_shows_noise_is_left_out() {
     swept(folder.path(), &mut |name, value| {
         if name.starts_with("body") { noise() } else { value }
     });
+    edit(folder.path(), one_run);
     let answer = discover(folder.path(), None);
     assert_eq!(answer["verdict"], "none", "{answer}");
     let notices = answer["notices"].to_string();
@@ -551,9 +588,7 @@ fn a_sensor_that_shows_noise_is_left_out() {
 fn one_run_alone_and_none_held_out_are_enough_for_an_answer() {
     let folder = tempfile::tempdir().expect("a folder");
     swept(folder.path(), &mut |_, value| value);
-    edit(folder.path(), |text| {
-        text.split("[[run]]").take(2).collect::<Vec<_>>().join("[[run]]")
-    });
+    edit(folder.path(), one_run);
     lacks_nothing_and_holds_out_nothing(folder.path());
     edit(folder.path(), |text| text.replace("\"fit\"", "\"held_out\""));
     assert!(refusal(folder.path()).contains("no run may be fitted"));
@@ -693,12 +728,17 @@ fn a_law_is_learned_where_the_catalogue_has_none() {
 
 /// The answer to short sweeps and K&C curves of an axle with an effect.
 fn of_short_sweeps(axle: &str, seed: u64, effect: Hidden) -> Value {
-    answer_to(Order {
+    answer_to(short_sweeps(axle, seed, vec![effect]))
+}
+
+/// A campaign of short sweeps and K&C curves.
+fn short_sweeps(axle: &str, seed: u64, effects: Vec<Hidden>) -> Order {
+    Order {
         cleats: false,
         programme: two_short_sweeps(),
-        effects: vec![effect],
+        effects,
         ..Order::clean(axle, seed)
-    })
+    }
 }
 
 /// The answer to a case of the blind matrix.
@@ -989,8 +1029,9 @@ fn a_law_is_learned_between_a_mass_and_the_ground() {
 /// What a search assumes that no data give decides no answer: with all numbers 30 % less, it stays the same.
 #[test]
 fn no_answer_hangs_on_a_number() {
+    let (order, usual) = &*CLEAN;
     let all_low = screening().pop().expect("the last way");
-    hangs_on_no_number(2000, vec![], &[all_low]);
+    stays(order, usual, &[all_low]);
 }
 
 /// The same in eight ways, 30 % more or less, in which each two numbers meet in every combination.
@@ -1015,19 +1056,23 @@ fn no_answer_to_other_campaigns_hangs_on_a_number() {
 }
 
 fn hangs_on_no_number(seed: u64, effects: Vec<Hidden>, ways: &[String]) {
+    let order = short_sweeps("c", seed, effects);
+    stays(&order, &answer_to(order.clone()), ways);
+}
+
+/// Asserts that an answer is also given with these numbers assumed.
+fn stays(order: &Order, usual: &Value, ways: &[String]) {
     let folder = tempfile::tempdir().expect("a folder");
     let campaign = folder.path().join("campaign");
-    let order = Order {
-        cleats: false,
-        programme: two_short_sweeps(),
-        effects,
-        ..Order::clean("c", seed)
-    };
-    make(order, &campaign).expect("a campaign");
-    let usual = names(&discover(&campaign, None));
+    make(order.clone(), &campaign).expect("a campaign");
     for assumed in ways {
         let other = names(&discover_with(&campaign, &["--assume", assumed]));
-        assert_eq!(other, usual, "the campaign of seed {seed} with {assumed}");
+        assert_eq!(
+            other,
+            names(usual),
+            "the campaign of seed {} with {assumed}",
+            order.seed
+        );
     }
 }
 
@@ -1135,7 +1180,7 @@ fn upside_down(phase: f64, noise: &mut impl FnMut() -> f64) -> String {
     };
     let rate = |t: f64, [x, v]: [f64; 2]| [v, (force(t) - 800.0 * x - 6.0 * v) / 2.0];
     let (h, mut y, mut text) = (1e-3, [0.0; 2], "time,force,body\n".to_owned());
-    for k in 0..20_000 {
+    for k in 0..10_000 {
         let t = f64::from(k) * h;
         if k % 5 == 0 {
             let body = rate(t, y)[1] + 0.2 * noise();

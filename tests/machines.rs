@@ -175,12 +175,12 @@ fn a_stop_of_foam_is_named() {
     is_found(&discover(folder.path(), None), "bump_stop", &truth);
 }
 
-/// A campaign of a strut on a crank, whose force is a law of its stretch and rate. The held-out run is `faster`, and the
-/// load cell has `noise` (N).
+/// A campaign of a strut on a crank, whose force is a law of its stretch and rate: whole turns in 2 s. The held-out run is
+/// `faster`, and the load cell has `noise` (N).
 fn on_a_crank(law: impl Fn(f64, f64) -> f64, (faster, noise): (f64, f64)) -> tempfile::TempDir {
     let rates = [0.5, 1.5, 2.5, 2.0 * faster];
     let runs = [0.02, 0.02, 0.018, 0.02].into_iter().zip(rates).map(|(size, f)| {
-        let samples = || (0..600).map(|k| f64::from(k) / 200.0);
+        let samples = || (0..400).map(|k| f64::from(k) / 200.0);
         let stretch = |t: f64| size * ((TAU * f * t).sin() + 0.1 * ((2.0 * TAU * f * t).cos() - 1.0));
         let rate = |t: f64| size * TAU * f * ((TAU * f * t).cos() - 0.2 * (2.0 * TAU * f * t).sin());
         vec![
