@@ -144,14 +144,18 @@ fn a_compliant_damper_with_two_slopes_is_named() {
 /// sharper one would show that the law is of another form.
 #[test]
 fn a_damper_that_keeps_a_slope_is_named() {
-    let folder = on_a_crank(|_, v| 900.0 * (v / 0.06).asinh() + 700.0 * v, (1.5, 20.0));
+    let folder = on_a_crank(|_, v| 900.0 * (v / 0.06).asinh() + 700.0 * v, (1.5, 20.0), 3);
     is_found(&discover(folder.path(), None), "digressive_damper", &[]);
 }
 
 /// A damper whose force is a power of the speed, with a slope without bound at rest.
 #[test]
 fn a_damper_of_a_power_law_is_named() {
-    let folder = on_a_crank(|s, v| 1000.0 * s + 1500.0 * v.abs().powf(0.6) * v.signum(), (1.0, 3.0));
+    let folder = on_a_crank(
+        |s, v| 1000.0 * s + 1500.0 * v.abs().powf(0.6) * v.signum(),
+        (1.0, 3.0),
+        2,
+    );
     let truth = [("exponent", 0.6, 0.03)];
     is_found(&discover(folder.path(), None), "segmented_polynomial_damper", &truth);
 }
@@ -160,7 +164,7 @@ fn a_damper_of_a_power_law_is_named() {
 #[test]
 fn a_column_of_gas_is_named() {
     let spring = |s: f64| 20e3 * 0.06 / 1.35 * (1.0 - (1.0 + s / 0.06).powf(-1.35));
-    let folder = on_a_crank(|s, v| spring(s) + 3000.0 * v, (1.0, 3.0));
+    let folder = on_a_crank(|s, v| spring(s) + 3000.0 * v, (1.0, 3.0), 2);
     let answer = discover(folder.path(), None);
     is_found(&answer, "progressive_spring", &[]);
     assert_eq!(answer["effects"][0]["form"], "gas", "{answer}");
@@ -170,17 +174,17 @@ fn a_column_of_gas_is_named() {
 #[test]
 fn a_stop_of_foam_is_named() {
     let stop = |s: f64| 4e4 * (s + 0.012).min(0.0) * (1.0 + ((s + 0.012).min(0.0) / 6e-3).powi(2));
-    let folder = on_a_crank(|s, v| 20e3 * s + 3000.0 * v + stop(s), (1.0, 3.0));
+    let folder = on_a_crank(|s, v| 20e3 * s + 3000.0 * v + stop(s), (1.0, 3.0), 2);
     let truth = [("gap", 0.012, 0.05), ("k_stop", 4e4, 0.1), ("d_stiff", 6e-3, 0.1)];
     is_found(&discover(folder.path(), None), "bump_stop", &truth);
 }
 
-/// A campaign of a strut on a crank, whose force is a law of its stretch and rate: whole turns in 2 s. The held-out run is
-/// `faster`, and the load cell has `noise` (N).
-fn on_a_crank(law: impl Fn(f64, f64) -> f64, (faster, noise): (f64, f64)) -> tempfile::TempDir {
+/// A campaign of a strut on a crank, whose force is a law of its stretch and rate: whole turns in these seconds. The
+/// held-out run is `faster`, and the load cell has `noise` (N).
+fn on_a_crank(law: impl Fn(f64, f64) -> f64, (faster, noise): (f64, f64), seconds: u32) -> tempfile::TempDir {
     let rates = [0.5, 1.5, 2.5, 2.0 * faster];
     let runs = [0.02, 0.02, 0.018, 0.02].into_iter().zip(rates).map(|(size, f)| {
-        let samples = || (0..400).map(|k| f64::from(k) / 200.0);
+        let samples = || (0..200 * seconds).map(|k| f64::from(k) / 200.0);
         let stretch = |t: f64| size * ((TAU * f * t).sin() + 0.1 * ((2.0 * TAU * f * t).cos() - 1.0));
         let rate = |t: f64| size * TAU * f * ((TAU * f * t).cos() - 0.2 * (2.0 * TAU * f * t).sin());
         vec![
@@ -303,7 +307,11 @@ fn lightly_damped(law: impl Fn(f64, f64) -> f64) -> tempfile::TempDir {
 /// make up for it.
 #[test]
 fn a_spring_of_another_form_is_named_alone() {
-    let folder = on_a_crank(|s, v| 20e3 * s * (1.0 + (s / 0.015).powi(4)) + 3000.0 * v, (1.0, 3.0));
+    let folder = on_a_crank(
+        |s, v| 20e3 * s * (1.0 + (s / 0.015).powi(4)) + 3000.0 * v,
+        (1.0, 3.0),
+        2,
+    );
     is_found(&discover(folder.path(), None), "progressive_spring", &[]);
 }
 

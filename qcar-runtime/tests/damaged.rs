@@ -33,6 +33,7 @@ fn tables() {
 
 #[test]
 fn workbooks() {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../qcar-signals/tests/samples/table/vehicle_template.xlsx");
+    let file =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../qcar-signals/tests/samples/table/vehicle_template.xlsx");
     survives(survives_workbook, &fs::read(file).unwrap(), 300);
 }

@@ -266,8 +266,8 @@ fn a_bootstrap_depends_on_the_seed_alone_and_has_gains_and_sides_in_it() {
         let setup = Setup::new(&model, plan, &levels).unwrap();
         let fit = setup.fit();
         let (found, again) = (
-            setup.bootstrap(&fit, 300, NO_PROGRESS),
-            setup.bootstrap(&fit, 300, NO_PROGRESS),
+            setup.bootstrap(&fit, 100, NO_PROGRESS),
+            setup.bootstrap(&fit, 100, NO_PROGRESS),
         );
         assert_eq!(found, again);
         let relative = |own: &ParameterBootstrap| own.stderr / own.value;

@@ -10,7 +10,7 @@ use qcar_runtime::campaign::{Axis, Campaign, Quantity, Test, Truth};
 use qcar_runtime::transmissibility::{Options, Point, Transmissibility, transmissibilities};
 
 fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../models/campaigns")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/campaigns")
 }
 
 fn point(location: &str, quantity: Quantity) -> Point {

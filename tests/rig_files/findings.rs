@@ -13,7 +13,7 @@ fn notices(spoil: impl Fn(&mut Group)) -> Vec<String> {
     let own = folder.path().join("own");
     fs::create_dir(&own).unwrap();
     campaign(&own, "mf4", |sweep| mdf4::file(std::slice::from_ref(sweep)));
-    let mut low = sweeps().remove(0);
+    let mut low = sweeps()[0].clone();
     spoil(&mut low);
     fs::write(own.join("sweep_0.mf4"), mdf4::file(&[low])).unwrap();
     open(&own).unwrap().notices
@@ -148,7 +148,7 @@ fn says_it_too(verb: &str) {
     let own = folder.path().join("own");
     fs::create_dir(&own).unwrap();
     campaign(&own, "mf4", |sweep| mdf4::file(std::slice::from_ref(sweep)));
-    let mut low = sweeps().remove(0);
+    let mut low = sweeps()[0].clone();
     samples(&mut low, "FL_Body_Acc_Z")[20_000] = 3.0;
     fs::write(own.join("sweep_0.mf4"), mdf4::file(&[low])).unwrap();
     // A search of the spoiled sweep alone takes a fraction of the time.

@@ -39,8 +39,13 @@ pub fn mapping() -> String {
     NAMES.iter().map(section).collect()
 }
 
-/// The sweeps of the original in g, each with its number in the names of files.
-pub fn sweeps() -> Vec<Group> {
+/// The sweeps of the original in g, each with its number in the names of files: read once for all tests.
+pub fn sweeps() -> &'static [Group] {
+    static SWEEPS: LazyLock<Vec<Group>> = LazyLock::new(read_sweeps);
+    &SWEEPS
+}
+
+fn read_sweeps() -> Vec<Group> {
     let campaign = Campaign::open(ORIGINAL).unwrap();
     let sweeps = campaign.runs.iter().filter(|run| matches!(run.test, Test::Sweep(_)));
     sweeps
@@ -62,7 +67,7 @@ pub fn campaign(folder: &Path, ending: &str, file: impl Fn(&Group) -> Vec<u8>) {
     let mut text = head.replace("[vehicle]", "mapping = \"../rig.toml\"\n\n[vehicle]");
     let levels = [("0.025", "fit"), ("0.05", "held_out"), ("0.1", "fit")];
     for (number, ((velocity, role), sweep)) in levels.iter().zip(sweeps()).enumerate() {
-        fs::write(folder.join(format!("sweep_{number}.{ending}")), file(&sweep)).unwrap();
+        fs::write(folder.join(format!("sweep_{number}.{ending}")), file(sweep)).unwrap();
         text += &format!(
             "[[run]]\nkind = \"sweep\"\nfile = \"sweep_{number}.{ending}\"\nrole = \"{role}\"\npeak_velocity = {velocity}\n\
              start_frequency = 0.5\nend_frequency = 30.0\nspacing = \"logarithmic\"\n\n"

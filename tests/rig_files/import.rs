@@ -107,9 +107,9 @@ fn sweeps_of_one_recording_become_runs() {
 #[test]
 fn a_sweep_is_found_between_late_stamps() {
     let folder = tempfile::tempdir().unwrap();
-    let even = sweeps().remove(0);
+    let even = &sweeps()[0];
     let late = |at: usize| (at as f64 + 0.1 * (at as f64 * 0.618).fract()) / even.rate;
-    let group = Group::stamped((0..even.len()).map(late).collect(), even.channels);
+    let group = Group::stamped((0..even.len()).map(late).collect(), even.channels.clone());
     fs::write(folder.path().join("late.mf4"), mdf4::file(&[group])).unwrap();
     let (status, said) = qcar(folder.path(), "import late.mf4 --out rig --model axle_a");
     assert!(

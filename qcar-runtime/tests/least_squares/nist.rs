@@ -104,7 +104,7 @@ struct Certified {
 }
 
 fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/least_squares/nist")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("least_squares/nist")
 }
 
 fn numbers(text: &str) -> Vec<f64> {

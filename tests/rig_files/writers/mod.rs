@@ -11,6 +11,7 @@ pub mod tdms;
 pub mod uff;
 
 /// Channels with common times.
+#[derive(Clone)]
 pub struct Group {
     /// Hz.
     pub rate: f64,
@@ -21,6 +22,7 @@ pub struct Group {
 }
 
 /// A channel of a file.
+#[derive(Clone)]
 pub struct Channel {
     pub name: String,
     pub unit: String,
