@@ -62,10 +62,13 @@ fn a_study_writes_all_that_it_promises() {
     assert!(said.contains(&report), "{said}");
 }
 
-/// The pages that are looked at: width in pixels, and theme.
-const PAGES: [(u64, &str); 2] = [(1280, "light"), (400, "dark")];
+/// Width in pixels, and theme.
+type Page = (u64, &'static str);
+
+/// The pages that are looked at.
+const PAGES: [Page; 2] = [(1280, "light"), (400, "dark")];
 /// The other pages, in tests of their own, since each takes seconds.
-const OTHER_PAGES: [(u64, &str); 2] = [(1280, "dark"), (400, "light")];
+const OTHER_PAGES: [Page; 2] = [(1280, "dark"), (400, "light")];
 
 #[test]
 fn the_report_is_whole_in_a_browser() {
@@ -79,13 +82,13 @@ fn the_report_is_whole_in_a_browser_in_other_ways() {
 }
 
 /// All pages but these.
-fn others(pages: &[(u64, &'static str)]) -> Vec<(u64, &'static str)> {
+fn others(pages: &[Page]) -> Vec<Page> {
     let all = PAGES.into_iter().chain(OTHER_PAGES);
     all.filter(|page| !pages.contains(page)).collect()
 }
 
 /// The pages of the study without a finding, and of that with one.
-fn report_is_whole(pages: [&[(u64, &str)]; 2]) {
+fn report_is_whole(pages: [&[Page]; 2]) {
     let Some(browser) = browser_or_word() else { return };
     for ((study, changed), pages) in [(&NOTHING_MISSING, false), (&ONE_MISSING, true)].into_iter().zip(pages) {
         let page = page(study);
@@ -320,7 +323,7 @@ fn a_comparison_is_whole_in_a_browser_in_other_ways() {
 }
 
 /// The pages of each comparison, by the one that is looked at first: narrow and wide in turn.
-fn comparison_is_whole(pages: fn((u64, &'static str)) -> Vec<(u64, &'static str)>) {
+fn comparison_is_whole(pages: fn(Page) -> Vec<Page>) {
     let Some(browser) = browser_or_word() else { return };
     let first = [PAGES[1], PAGES[0], PAGES[1]];
     for (((subject, sections), page), first) in COMPARED.iter().zip(&COMPARISONS).zip(first) {
