@@ -11,6 +11,7 @@ mod expressions;
 mod forces;
 mod frequency_response;
 mod interpreter;
+mod kinds;
 mod language_reference;
 mod models_read;
 mod never_panics;

@@ -25,6 +25,8 @@ mod graph;
 mod roles;
 // The places where an effect applies.
 mod place;
+// Places with the same surroundings.
+mod kind;
 // The meaning of an effect's names at a place.
 mod bind;
 // The effect's statements, applied to the tree.
@@ -40,11 +42,13 @@ mod rules;
 pub mod difference;
 
 use std::borrow::Cow;
+use std::cell::LazyCell;
 use std::collections::BTreeMap;
 
 pub use all_outputs::{is_push, push, with_all_outputs};
 use bind::Bindings;
 pub use curve::{Curve, Ordinate};
+use kind::Parts;
 pub(crate) use model_tree::ModelTree;
 use place::Place;
 pub use qcar_model::ParameterRole;
@@ -220,7 +224,7 @@ impl Patch {
         let before = identifiability::with_identifiability(model.clone());
         // An error of a sensor leaves the same model at every place, so one check serves all of them.
         let mut accepted: HashMap<String, bool> = HashMap::default();
-        let mut applies = |place: &Place| {
+        let mut applies_at = |place: &Place| {
             forms.iter().any(|form| {
                 let Ok((mut tree, ..)) = form.tree(&base, &roles, place, values) else {
                     return false;
@@ -232,8 +236,19 @@ impl Patch {
                     .or_insert_with(|| is_accepted(&tree, text, &before))
             })
         };
-        let places = place::fitting(&base, &roles, &self.effect.pattern).into_iter();
-        places.filter(|place| applies(place)).map(|place| place.label).collect()
+        let places = place::fitting(&base, &roles, &self.effect.pattern);
+        let has_several = places.len() > 1;
+        let parts = LazyCell::new(|| Parts::of(&base, &roles, &before));
+        let mut of_kind: HashMap<String, bool> = HashMap::default();
+        let mut applies = |place: &Place| match has_several.then(|| parts.kind(&self.effect, place)).flatten() {
+            Some(kind) => *of_kind.entry(kind).or_insert_with(|| applies_at(place)),
+            None => applies_at(place),
+        };
+        places
+            .into_iter()
+            .filter(|place| applies(place))
+            .map(|place| place.label)
+            .collect()
     }
 
     /// The model with the effect at each place where it applies, in the order of the model's text, and in each form. It

@@ -124,6 +124,18 @@ impl Roles {
         }
     }
 
+    /// The names of wheel, body and pivot in the corner to which a place belongs; empty for one that it lacks.
+    pub fn of_corner(&self, place: (&str, &str)) -> [&str; 4] {
+        let corner = self.corner(place);
+        let name = |part: fn(&Corner) -> Option<&String>| corner.and_then(part).map_or("", String::as_str);
+        [
+            name(|corner| Some(&corner.wheel)),
+            name(|corner| corner.body.as_ref()),
+            name(|corner| corner.pivot.as_ref()),
+            name(|corner| corner.pivot_point.as_ref()),
+        ]
+    }
+
     /// True if a link has a role.
     pub fn is_link(&self, direction: &str, link: &str, role: &str) -> bool {
         let own = self.links.get(&(direction.to_string(), link.to_string()));
