@@ -2,7 +2,7 @@
 
 // A single number.
 mod number;
-// A dot product.
+// Dot products.
 mod dot;
 // The results of a response.
 mod lines;
@@ -15,7 +15,7 @@ mod portable;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
-pub(crate) use dot::dot;
+pub(crate) use dot::{dot, dots};
 pub use lines::LinesMut;
 pub use number::{sign, table};
 #[cfg(not(target_arch = "x86_64"))]

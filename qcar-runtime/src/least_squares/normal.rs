@@ -2,10 +2,13 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::vectors::{Loops, dot, widest};
+use crate::vectors::{Loops, dot, dots, widest};
 
 /// Rows of the Jacobian in one block: twenty columns of them fit in a first-level cache.
 const BLOCK: usize = 192;
+
+/// Columns of a block that stay in that cache while all others are multiplied by them.
+const GROUP: usize = 16;
 
 /// The normal equations of a linearised problem.
 pub(super) struct NormalEquations {
@@ -100,9 +103,23 @@ impl Loops for Products<'_> {
 
     #[inline(always)]
     fn run(self) {
-        for (count, (i, left)) in self.blocks.iter().enumerate() {
-            for (j, right) in &self.blocks[..=count] {
-                self.sums[(*i, *j)] += dot(left, right);
+        for (first, group) in self
+            .blocks
+            .chunks(GROUP)
+            .enumerate()
+            .map(|(at, group)| (at * GROUP, group))
+        {
+            for (count, (i, left)) in self.blocks.iter().enumerate().skip(first) {
+                let (fours, rest) = group[..group.len().min(count + 1 - first)].as_chunks::<4>();
+                for four in fours {
+                    let products = dots(left, four.map(|(_, right)| right));
+                    for ((j, _), product) in four.iter().zip(products) {
+                        self.sums[(*i, *j)] += product;
+                    }
+                }
+                for (j, right) in rest {
+                    self.sums[(*i, *j)] += dot(left, right);
+                }
             }
         }
     }

@@ -8,14 +8,15 @@ use super::Response;
 use super::parameters::Values;
 use super::signal::Term;
 use crate::model::Model;
+use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
 
 /// The logarithms of some signals, and their derivatives along some parameters, on the grid of a [`Response`].
 pub struct Logarithms {
     terms: Vec<Term>,
     columns: usize,
-    /// For each term: (column, entry of the response's Jacobian).
-    sources: Vec<Vec<(usize, usize)>>,
+    /// For each term the entries of the response's Jacobian by column. Other columns are always zero.
+    sources: Vec<BTreeMap<usize, Vec<usize>>>,
     /// For each term the logarithm of its power of jω, `k ln ω`, which depends on no parameter.
     offset: Vec<Vec<f64>>,
     /// `1/N` of the current term, so that its derivatives need no division.
@@ -107,13 +108,17 @@ impl Logarithms {
     fn differentiate<M: Model + ?Sized>(&mut self, term: usize, response: &Response<'_, M>) {
         let Some(row) = self.terms[term].row else { return };
         self.invert(response.row(row));
-        let whole = self.slope_range(term, 0).start..self.slope_range(term, self.columns).start;
-        self.d_magnitude[whole.clone()].fill(0.0);
-        self.d_angle[whole].fill(0.0);
-        for &(column, entry) in &self.sources[term] {
+        for (&column, entries) in &self.sources[term] {
             let range = self.slope_range(term, column);
-            let into = (&mut self.d_magnitude[range.clone()], &mut self.d_angle[range]);
-            add_product(into, response.entry(entry), (&self.reciprocal.0, &self.reciprocal.1));
+            let (magnitude, angle) = (&mut self.d_magnitude[range.clone()], &mut self.d_angle[range]);
+            for (place, &entry) in entries.iter().enumerate() {
+                let into = (&mut *magnitude, &mut *angle);
+                let by = (&self.reciprocal.0[..], &self.reciprocal.1[..]);
+                match place {
+                    0 => multiply(into, response.entry(entry), by, |to, product| *to = product),
+                    _ => multiply(into, response.entry(entry), by, |to, product| *to += product),
+                }
+            }
         }
     }
 
@@ -127,14 +132,14 @@ impl Logarithms {
     }
 }
 
-/// `into += a b` of complex rows.
-fn add_product(into: (&mut [f64], &mut [f64]), a: (&[f64], &[f64]), b: (&[f64], &[f64])) {
+/// The product `a b` of complex rows, put into another row or added to it.
+fn multiply(into: (&mut [f64], &mut [f64]), a: (&[f64], &[f64]), b: (&[f64], &[f64]), put: impl Fn(&mut f64, f64)) {
     let lines = into.0.len();
     let (into_re, into_im) = (&mut into.0[..lines], &mut into.1[..lines]);
     let (a_re, a_im, b_re, b_im) = (&a.0[..lines], &a.1[..lines], &b.0[..lines], &b.1[..lines]);
     for line in 0..lines {
-        into_re[line] += a_re[line] * b_re[line] - a_im[line] * b_im[line];
-        into_im[line] += a_re[line] * b_im[line] + a_im[line] * b_re[line];
+        put(&mut into_re[line], a_re[line] * b_re[line] - a_im[line] * b_im[line]);
+        put(&mut into_im[line], a_re[line] * b_im[line] + a_im[line] * b_re[line]);
     }
 }
 
@@ -143,14 +148,18 @@ fn sources<M: Model + ?Sized>(
     term: Term,
     values: &Values,
     free: &[usize],
-) -> Vec<(usize, usize)> {
+) -> BTreeMap<usize, Vec<usize>> {
     let column = |parameter: u16| {
         free.iter()
             .position(|&free| free == values.leader(usize::from(parameter)))
     };
     let entries = response.layout().jacobian.iter().enumerate();
-    entries
-        .filter(|(_, (row, _))| term.row == Some(usize::from(*row)))
-        .filter_map(|(entry, (_, parameter))| column(*parameter).map(|column| (column, entry)))
-        .collect()
+    let own = entries.filter(|(_, (row, _))| term.row == Some(usize::from(*row)));
+    let mut sources = BTreeMap::<usize, Vec<usize>>::new();
+    for (entry, (_, parameter)) in own {
+        if let Some(column) = column(*parameter) {
+            sources.entry(column).or_default().push(entry);
+        }
+    }
+    sources
 }
