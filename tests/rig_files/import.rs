@@ -103,6 +103,32 @@ fn sweeps_of_one_recording_become_runs() {
     }
 }
 
+/// The quarter car moves along z only, so a channel need not name that axis; one that names another is no sensor of it.
+#[test]
+fn a_channel_without_an_axis_is_along_the_only_axis_of_a_model() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut sweep = sweeps().remove(0);
+    let names = ["Platen", "Hub", "Body Lateral"];
+    for (channel, name) in sweep.channels.iter_mut().zip(names) {
+        channel.name = name.to_string();
+    }
+    sweep.channels.truncate(names.len());
+    fs::write(folder.path().join("one.mf4"), mdf4::file(&[sweep])).unwrap();
+    let (status, said) = qcar(folder.path(), "import one.mf4 --out rig --model quarter_car");
+    let words = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert_eq!(status, 0, "{said}");
+    for part in [
+        "pad_centre_z",
+        "wheel_centre_z",
+        "its name has an axis that the model lacks",
+    ] {
+        assert!(words.contains(part), "no `{part}` in\n{said}");
+    }
+    let (_, said) = qcar(folder.path(), "import one.mf4 --out both --model axle_a");
+    let words = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("its name has no axis, x or z"), "{said}");
+}
+
 /// Stamps that are late by up to a tenth of a step.
 #[test]
 fn a_sweep_is_found_between_late_stamps() {

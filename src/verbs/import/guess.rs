@@ -1,6 +1,7 @@
 //! The sensor of a channel, from the words of its name and its unit.
 
 use std::cmp::Reverse;
+use std::collections::BTreeSet;
 
 use qcar_runtime::campaign::{Axis, Quantity, RoleNames};
 use qcar_runtime::model::{About, State, StateKind};
@@ -66,6 +67,9 @@ const AXES: &[(&[&str], Axis)] = &[
     (&["z", "vert", "vertical", "accz", "az", "hoch"], Axis::Z),
     (&["x", "long", "longitudinal", "lon", "accx", "ax", "laengs"], Axis::X),
 ];
+
+/// Words for the lateral axis, which a channel may have though the model does not.
+const ACROSS: &[&str] = &["y", "lat", "lateral", "accy", "ay", "quer"];
 
 const QUANTITIES: &[(&[&str], Quantity)] = &[
     (
@@ -135,7 +139,7 @@ impl Guess {
             .or_else(|| meaning(&words, QUANTITIES))
             .unwrap_or(Quantity::Acceleration);
         let (location, drives) = location(&words, about).ok_or("no word in its name is a part of the model")?;
-        let axis = meaning(&words, AXES).ok_or("its name has no axis, x or z")?;
+        let axis = axis(&words, about)?;
         Ok(Guess {
             location,
             drives,
@@ -225,6 +229,21 @@ fn moves_along_axis(state: &State) -> bool {
 fn has_name(words: &[String], name: &str) -> bool {
     let own = self::words(name);
     words.contains(&name.to_lowercase()) || !own.is_empty() && words.windows(own.len()).any(|part| part == own)
+}
+
+/// The axis that a name states; otherwise the only one of a model.
+fn axis(words: &[String], about: &About) -> Result<Axis, &'static str> {
+    if let Some(stated) = meaning(words, AXES) {
+        return Ok(stated);
+    }
+    let driven = about.excitations.iter().map(|own| &*own.axis);
+    let own: BTreeSet<&str> = about.states.iter().map(|own| &*own.axis).chain(driven).collect();
+    let is_lacking = |word: &String| ACROSS.contains(&word.as_str()) && !own.contains(word.as_str());
+    match own.first() {
+        _ if words.iter().any(is_lacking) => Err("its name has an axis that the model lacks"),
+        Some(only) if own.len() == 1 => Ok(Axis::new(only.to_string())),
+        _ => Err("its name has no axis, x or z"),
+    }
 }
 
 /// A place of the model by its own name or by a common name, and true if it is the road.
