@@ -19,3 +19,4 @@ mod ground;
 pub use course::{Course, SEED};
 pub use ground::{Ground, MetricError, Reading, Slopes, Trace};
 pub use name::{Measure, Metric, What, metrics};
+pub use travel::WithTravel;

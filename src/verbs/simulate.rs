@@ -7,6 +7,7 @@ use clap::{Args, ValueEnum};
 use clap_complete::engine::ArgValueCompleter;
 use qcar_runtime::campaign::{Campaign, Test};
 use qcar_runtime::error::{InputError, Place, Problem};
+use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::simulate::{Car, Cleat, Drive, Ride, Settings, SimulateError, Variant, rides, tyre};
 use qcar_runtime::statics::contradictions;
@@ -357,7 +358,7 @@ pub(crate) fn drive(
     model.check_inertias(values.as_slice())?;
     let drives: Vec<Drive> = cleats.iter().map(Cleat::drive).collect();
     let what = format!("{}: ride", campaign.name);
-    let rides = simulate_rides(what, model, values, tyre(campaign)?, &drives, variant);
+    let rides = simulate_rides(what, &**model, values, tyre(campaign)?, &drives, variant);
     let rides = checked(cleats, rides)?;
     let compared = comparison::compare(model.about(), &campaign.roles, cleats, &rides)?;
     Ok(CleatResults { rides, compared })
@@ -366,14 +367,14 @@ pub(crate) fn drive(
 /// Simulates rides of a model on a tyre that carries a load (N), with progress in a terminal.
 pub(crate) fn simulate_rides(
     what: String,
-    model: &Loaded,
+    model: &dyn Model,
     values: &Values,
     (tyre, load): (Tyre, f64),
     drives: &[Drive<'_>],
     variant: Variant,
 ) -> Vec<Result<Ride, SimulateError>> {
     let car = Car {
-        model: &**model,
+        model,
         parameters: values.as_slice(),
         tyre,
         load,

@@ -135,6 +135,32 @@ fn spectra_of_a_linear_axle_are_those_of_the_road_times_its_response() {
     }
 }
 
+/// Its second difference is the acceleration of the wheel less that of the body, but for the error of the difference,
+/// (2π f dt)²/12: 1 % at 55 Hz.
+#[test]
+fn the_suspension_travel_of_a_ride_is_the_height_of_the_wheel_over_the_body() {
+    let folder = tempfile::tempdir().unwrap();
+    let result = rolled(&["C@80km/h:5s"], folder.path());
+    let record = columns(&folder.path().join("iso_C_80kmh_5s.csv"));
+    let travel = &record["suspension_travel [m]"];
+    let [wheel, body] = ["wheel", "body"].map(|mass| &record[&format!("z_{mass}_acceleration [m/s^2]")]);
+    let (mut error, mut power) = (0.0, 0.0);
+    for at in 1..travel.len() - 1 {
+        let second = (travel[at + 1] - 2.0 * travel[at] + travel[at - 1]) * 1000.0_f64.powi(2);
+        error += (second - (wheel[at] - body[at])).powi(2);
+        power += second.powi(2);
+    }
+    assert!((error / power).sqrt() < 0.01, "{}", (error / power).sqrt());
+    let largest = travel
+        .iter()
+        .fold(0.0_f64, |most, own| most.max((own - travel[0]).abs()));
+    let found = result["loads"][0]["suspension_travel"].as_f64().unwrap();
+    assert!(
+        largest > 0.005 && (found - largest).abs() < 1e-9,
+        "{found}, not {largest}"
+    );
+}
+
 #[test]
 fn a_road_is_the_same_from_whichever_file() {
     let folder = tempfile::tempdir().unwrap();

@@ -136,7 +136,7 @@ fn rides_of(side: &Side, runs: &[Run]) -> Result<Vec<Ride>, InputError> {
     let tyre = tyre_of(&|name| side.vehicle.facts.get(name).copied(), &side.vehicle.file)?;
     let drives: Vec<Drive> = runs.iter().map(Run::drive).collect();
     let what = format!("{}: ride", side.name);
-    let all = simulate_rides(what, &side.model, &side.values, tyre, &drives, Variant::Complete);
+    let all = simulate_rides(what, &*side.model, &side.values, tyre, &drives, Variant::Complete);
     let checked = runs
         .iter()
         .zip(all)

@@ -6,8 +6,8 @@ use qcar_runtime::campaign::Campaign;
 use qcar_runtime::compare::{Weighting, rms, vibration_dose};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::mean::deviation;
-use qcar_runtime::metric::Course;
-use qcar_runtime::model::{About, Quantity, Signal, SignalKind};
+use qcar_runtime::metric::{Course, WithTravel};
+use qcar_runtime::model::{Model, Quantity, Signal, SignalKind};
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::simulate::{Drive, Ride, Variant, tyre};
 use qcar_signals::mdf::write::Channel;
@@ -85,6 +85,8 @@ struct Load {
     lowest_load: f64,
     /// Number of times that the tyre lost contact.
     lift_offs: usize,
+    /// Largest change of the wheel's height over the body, m; `None` if the model does not determine these.
+    suspension_travel: Option<f64>,
 }
 
 /// Rolls over each road, from equilibrium on level ground.
@@ -101,9 +103,10 @@ pub(super) fn roll(
     model.check_inertias(values.as_slice())?;
     let (tyre, load) = tyre(campaign)?;
     let drives: Vec<Drive<'_>> = courses.iter().map(Course::drive).collect();
+    let with_travel = WithTravel::new(&**model, &campaign.roles);
     let ridden = simulate_rides(
         format!("{}: road", campaign.name),
-        model,
+        &with_travel,
         values,
         (tyre, load),
         &drives,
@@ -120,7 +123,7 @@ pub(super) fn roll(
     };
     for (course, ride) in courses.iter().zip(ridden) {
         let ride = ride.map_err(|error| no_ride(campaign, course, &error.to_string()))?;
-        rolled.add(model.about(), course, &ride, load);
+        rolled.add(&with_travel, course, &ride, load);
     }
     Ok(rolled)
 }
@@ -137,7 +140,8 @@ fn no_ride(campaign: &Campaign, course: &Course, error: &str) -> Problem {
 }
 
 impl Rolled {
-    fn add(&mut self, about: &About, course: &Course, ride: &Ride, static_load: f64) {
+    fn add(&mut self, model: &WithTravel, course: &Course, ride: &Ride, static_load: f64) {
+        let about = model.about();
         let accelerations = about.outputs.iter().zip(&ride.outputs).filter(|(output, _)| {
             let kind = SignalKind::Motion(Quantity::Acceleration);
             output.signal.kind == kind && output.unit == ACCELERATION
@@ -159,6 +163,7 @@ impl Rolled {
             dynamic_load: deviation(&ride.force[0]),
             lowest_load: ride.force[0].iter().copied().fold(f64::INFINITY, f64::min),
             lift_offs: ride.lift_offs.len(),
+            suspension_travel: model.added().map(|travel| largest_change(&ride.outputs[travel])),
         });
         let mut history = render::history(about, &course.name, ride);
         history.channels.insert(
@@ -233,11 +238,12 @@ impl Rolled {
     }
 
     fn load_table(&self) -> Table {
-        let force = |value: f64| number(units::value(value, "N"), 4);
+        let [force, length] = ["N", "m"].map(|unit| move |value: f64| number(units::value(value, unit), 4));
         let mut loads = Table::new([
             "road",
             "duration_s",
             "road_rms",
+            "travel",
             "unit",
             "dynamic_load",
             "static_load",
@@ -249,7 +255,8 @@ impl Rolled {
             loads.row(vec![
                 own.road.clone(),
                 number(own.duration, 4),
-                number(units::value(own.road_rms, "m"), 4),
+                length(own.road_rms),
+                own.suspension_travel.map_or_else(String::new, length),
                 units::name("m").into(),
                 force(own.dynamic_load),
                 force(own.static_load),
@@ -280,6 +287,12 @@ impl Rolled {
         let head = format!("road,mass,axis,{rms},weighting,{weighted},crest_factor,vdv [m/s^1.75]\n");
         head + &self.vibration.iter().map(row).collect::<String>()
     }
+}
+
+/// The largest change of a signal since its first sample, in its unit.
+fn largest_change(samples: &[f64]) -> f64 {
+    let changes = samples.iter().map(|sample| (sample - samples[0]).abs());
+    changes.fold(0.0, f64::max)
 }
 
 impl Vibration {
