@@ -112,7 +112,7 @@ fn has_only_masses(about: &About) -> bool {
 
 /// States up to which [`growing`] computes the eigenvalues: at this number they take a tenth of a second, and the time
 /// grows with its cube.
-const MOST_STATES: usize = 200;
+pub const MOST_STATES: usize = 200;
 
 /// The eigenvalue of the motion that grows fastest, 1/s; `None` if the model is stable, or too large for a check beside
 /// other work.

@@ -250,6 +250,18 @@ pub fn transmissibilities(
     Ok(pairs.iter().map(|pair| related.ratio(history, pair)).collect())
 }
 
+/// Checks that the reference of a sweep does what the campaign states: that its frequency grows by the stated law from end
+/// to end, and that it has the stated velocity.
+///
+/// # Errors
+/// Fails if it does not, or if its record is too short for the sweep.
+pub fn check_sweep(history: &History, reference: &Point) -> Result<(), InputError> {
+    let excitation = signal(history, reference)?;
+    law::check(history, reference, &excitation)?;
+    let spectra = spectrum::transforms(&[excitation]);
+    band::frequencies(history, reference, &spectra[0], &Options::default()).map(drop)
+}
+
 /// Points and their responses to the first of them.
 pub struct Related {
     points: Vec<Point>,

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use qcar_dsl::response::Wanted;
-use qcar_runtime::free_motions::{FreeMotion, FreeMotions, Kind, free_motions};
+use qcar_runtime::free_motions::{FreeMotion, FreeMotions, Kind, MOST_STATES, free_motions};
 use qcar_runtime::matrices::at_rest;
 use qcar_runtime::model::{About, Model, StateKind};
 use qcar_runtime::response::parameters::Values;
@@ -153,7 +153,9 @@ fn notices(model: &dyn Model, values: &Values, found: &FreeMotions) -> Vec<Strin
         )
     });
     let out = parameters::out_of_range(model.about(), values.as_slice()).into_iter();
-    out.chain(unstable(model, values))
+    // The table says of each motion of a larger model whether it grows.
+    let is_checked = model.about().states.len() <= MOST_STATES;
+    out.chain(is_checked.then(|| unstable(model, values)).flatten())
         .chain(overdamped)
         .chain(aperiodic)
         .chain(rigid)

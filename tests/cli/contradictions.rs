@@ -60,6 +60,54 @@ fn check_finds_what_a_fit_refuses() {
     );
 }
 
+/// A fit of a nonlinear model takes the frequencies from the record, so these are no more than warnings.
+#[test]
+fn check_names_a_sweep_that_is_not_as_stated_for_a_nonlinear_model_too() {
+    let checked = |old: &str, new: &str| {
+        let campaign = with(old, new);
+        let nonlinear = campaign.path().join("nonlinear.axle").display().to_string();
+        let patched = qcar(&[
+            "patch",
+            "axle_a",
+            "progressive_spring",
+            "--at",
+            "spring",
+            "--out",
+            &nonlinear,
+        ]);
+        assert_eq!(patched.status, 0, "{}", patched.stderr);
+        let manifest = campaign.path().join("campaign.toml");
+        let text = fs::read_to_string(&manifest).unwrap();
+        fs::write(
+            &manifest,
+            text.replacen("model = \"axle_a\"", "model = \"nonlinear.axle\"", 1),
+        )
+        .unwrap();
+        let checked = run("check", &campaign);
+        checked.stdout.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    for (old, new, said) in [
+        (
+            "spacing = \"logarithmic\"",
+            "spacing = \"linear\"",
+            "write `spacing = \"logarithmic\"`",
+        ),
+        (
+            "end_frequency = 30.0",
+            "end_frequency = 60.0",
+            "expected a sweep to `end_frequency = 60`",
+        ),
+    ] {
+        let words = checked(old, new);
+        assert!(words.contains(said), "expected `{said}` in {words}");
+    }
+    let words = checked("spacing", "spacing");
+    assert!(
+        !words.contains("expected a sweep") && !words.contains("write `spacing"),
+        "{words}"
+    );
+}
+
 #[test]
 fn check_finds_what_kc_refuses() {
     let unusable = |old: &str, new: &str, said: &str| {

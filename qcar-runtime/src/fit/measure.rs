@@ -6,7 +6,7 @@ use crate::campaign::{Campaign, Channel as Sensor, History, Run, Side, Test};
 use crate::error::{InputError, Place, Problem};
 use crate::model::{About, Channel, Signal};
 use crate::progress::{self, OnProgress};
-use crate::transmissibility::{Options, Point, Related, Transmissibility, points};
+use crate::transmissibility::{Options, Point, Related, Transmissibility, check_sweep, points};
 use nalgebra::Complex;
 
 /// Measures the channels of every sweep and time history of a campaign that excites the model.
@@ -50,6 +50,22 @@ pub fn levels(
         problems.extend(free);
     }
     InputError::unless_empty(problems, Some(levels))
+}
+
+/// Checks that the excitation of every sweep is the one that the campaign states, as [`levels`] does before it estimates
+/// responses.
+///
+/// # Errors
+/// Fails as [`check_sweep`] does, or if a sweep cannot be read or records no excitation of the model.
+pub fn check_sweeps(campaign: &Campaign, about: &About) -> Result<(), InputError> {
+    let sweeps = campaign.runs.iter().filter(|run| matches!(run.test, Test::Sweep(_)));
+    let check = |run: &Run| {
+        let history = campaign.history(run)?;
+        let (_, reference) = excitation(&history, about, &points(&history))?;
+        check_sweep(&history, &reference)
+    };
+    let refused = sweeps.filter_map(|run| check(run).err());
+    InputError::unless_empty(refused.flat_map(|error| error.problems).collect(), Some(()))
 }
 
 /// What a run gives.

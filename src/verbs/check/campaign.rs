@@ -6,6 +6,7 @@ use std::path::Path;
 use qcar_dsl::response::Wanted;
 use qcar_runtime::campaign::{Campaign, Role, Run, Test};
 use qcar_runtime::error::InputError;
+use qcar_runtime::fit::measure::check_sweeps;
 use qcar_runtime::simulate::{Cleat, tyre};
 
 use crate::catalogue::{self, Loaded};
@@ -36,6 +37,10 @@ pub(super) fn verdict(folder: &Path) -> Result<(bool, String), Failure> {
         }
     }
     sentences.extend(suspect_units(&campaign)?);
+    // A fit of a linear model refuses such sweeps; that of a nonlinear one compares harmonics where the excitation has them.
+    if !model.about().linear {
+        sentences.extend(refusals(check_sweeps(&campaign, model.about())));
+    }
     let is_dead = findings.iter().any(|finding| finding.fatal);
     let unfit = refusals(fit::check(&campaign, &model));
     let unusable = unusable(&campaign)?;
