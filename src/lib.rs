@@ -39,6 +39,8 @@ pub mod parameters;
 pub mod inertias;
 // Parameter values at which a model is unstable.
 mod stability;
+// Resonances between the lines of a response.
+mod lines;
 // Names of roads on the command line.
 pub mod roads;
 // Models by name or path.

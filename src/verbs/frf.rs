@@ -20,6 +20,7 @@ use serde::Serialize;
 use crate::catalogue;
 use crate::failure::{Failure, flag};
 use crate::json::{self, Ordered};
+use crate::lines::missed;
 use crate::parameters;
 use crate::stability::unstable;
 use crate::table::{Table, noted, noted_below, number};
@@ -147,6 +148,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         notices: parameters::out_of_range(model.about(), values.as_slice())
             .into_iter()
             .chain(unstable(&*model, &values))
+            .chain(missed(&*model, &values, &frequency))
             .collect(),
     };
     refuse_resonance(&*model, &values, &response)?;
@@ -169,7 +171,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
 #[derive(Serialize)]
 struct FrequencyResponse {
     model: String,
-    /// Values outside the ranges of the model and those at which it is unstable, as sentences.
+    /// Values outside the ranges of the model and those at which it is unstable, and peaks that the lines miss, as sentences.
     notices: Vec<String>,
     channels: Ordered<ChannelResponse>,
 }

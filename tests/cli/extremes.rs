@@ -1,5 +1,6 @@
 //! Models at an edge: modes with equal eigenvalues, without damping, unstable ones, and those that no road carries.
 
+use std::f64::consts::TAU;
 use std::fs;
 use std::path::Path;
 
@@ -19,6 +20,15 @@ const UNDAMPED: &str = "axle undamped { \"A mass on a spring\"
     known param m: kg = 100; param k: N/m = 3947.8417604357434 in 1..1e6; param c: N s/m = 0 in -1e4..1e4;
     direction z { motion base; mass body = m; link spring: body - base { active; spring k; force = c*v; }
         channel to_body = body.acceleration / base.acceleration; } }";
+
+/// A mass with a broad resonance at 2 Hz, and a stiff one on the same base. A point that moves with the first and a share of
+/// the second is measured.
+const BESIDE: &str = "axle beside { \"Two masses\"
+    known param m: kg = 10; known param k: N/m = 1579; known param c: N s/m = 12.6; known param k_far: N/m = 4.1e4;
+    param c_far: N s/m = 0.2 in 0..1e3;
+    direction z { motion base; mass near = m; mass far = m; point sum = near + 0.01*far;
+        link one: near - base { spring k; damper c; } link other: far - base { spring k_far; damper c_far; }
+        channel to_sum = sum.acceleration / base.acceleration; } }";
 
 /// A wheel and a body that a link drives to move ever more.
 const DRIVEN: &str = "axle driven_corner { \"A driven corner\"
@@ -44,6 +54,7 @@ fn folder() -> tempfile::TempDir {
     let files = [
         ("twins.axle", TWINS),
         ("undamped.axle", UNDAMPED),
+        ("beside.axle", BESIDE),
         ("driven.axle", DRIVEN),
         ("half_car.axle", TWO_TYRES),
         ("vehicle.toml", VEHICLE),
@@ -142,6 +153,78 @@ fn a_peak_without_damping_has_no_height() {
     );
     let height = damped["metrics"][0]["value"].as_f64().unwrap();
     assert!((height / 500.0 - 1.0).abs() < 1e-3, "{height}");
+}
+
+/// Two masses that nothing couples beside the stated ratio's own: of a large peak and of one with little or no damping
+/// between two lines, the higher one is the peak. The height of a resonance with a damping ratio ζ is 1 / (2 ζ), but for
+/// (2 ζ)² / 2 of it.
+#[test]
+fn a_narrow_peak_between_lines_is_found_beside_a_broad_one() {
+    let folder = folder();
+    let beside = |damping: &str, metric: &str| {
+        let line = format!("sensitivity beside.axle --metrics {metric} --set c_far={damping}");
+        json(folder.path(), &line)
+    };
+    for damping in [0.02, 0.2] {
+        let ratio = damping / (2.0 * (10.0_f64 * 4.1e4).sqrt());
+        let share = 0.01;
+        let found = beside(&damping.to_string(), "to_sum.peak,to_sum.peak_frequency");
+        let [height, frequency] = [0, 1].map(|at| found["metrics"][at]["value"].as_f64().unwrap());
+        // The other mass adds about its own motion above its resonance.
+        assert!((height / (share / (2.0 * ratio)) - 1.0).abs() < 0.02, "{height}");
+        assert!((frequency / (4.1e3_f64.sqrt() / TAU) - 1.0).abs() < 1e-4, "{frequency}");
+    }
+    let found = beside("0", "to_sum.peak,mode.1.frequency");
+    assert!(found["notices"][0].as_str().unwrap().contains("is undamped"), "{found}");
+    // With much damping it is the peak of the other mass.
+    let found = beside("200", "to_sum.peak_frequency");
+    assert!(found["metrics"][0]["value"].as_f64().unwrap() < 3.0, "{found}");
+}
+
+/// The mode at 10.19 Hz is between two of 40 lines from 1 to 30 Hz; a line at it reads its height.
+#[test]
+fn a_peak_between_the_lines_of_a_response_is_named() {
+    let folder = folder();
+    let told = |lines: &str| {
+        said(
+            folder.path(),
+            &format!("frf beside.axle --set c_far=0.2 --frequencies {lines}"),
+        )
+    };
+    let words = |text: String| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let missed = words(told("1:30:40"));
+    assert!(
+        missed.contains("the peak of a mode at 10.191 Hz (damping ratio 0.00016)"),
+        "{missed}"
+    );
+    assert!(!words(told("10.18:10.2:40")).contains("the peak of a mode"));
+    let both = words(said(folder.path(), "compare beside.axle beside.axle --set c_far=0.2"));
+    assert!(both.contains("the peak of a mode at 10.191 Hz"), "{both}");
+}
+
+/// 101 masses have 202 states.
+#[test]
+fn a_model_with_too_many_states_for_the_check_of_its_stability_says_so() {
+    let folder = folder();
+    let member = |at: usize| {
+        format!(
+            "mass q{at} = m; link l{at}: q{at} - q{} {{ spring k; damper c; }} ",
+            at - 1
+        )
+    };
+    let members: String = (1..=101).map(member).collect();
+    let chain = format!(
+        "axle chain {{ \"A chain\" known param m: kg = 2; known param k: N/m = 4e3; known param c: N s/m = 30;
+         direction z {{ motion q0; {members} channel to_q1 = q1.acceleration / q0.acceleration; }} }}"
+    );
+    fs::write(folder.path().join("chain.axle"), chain).unwrap();
+    let frf = said(folder.path(), "frf chain.axle --frequencies 1:2:2");
+    let words = frf.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        words.contains("whether model chain is stable was not checked, since it has 202 states"),
+        "{words}"
+    );
+    assert!(!said(folder.path(), "modes chain.axle").contains("not checked"));
 }
 
 #[test]

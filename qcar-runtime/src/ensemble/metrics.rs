@@ -6,8 +6,7 @@ use crate::campaign::RoleNames;
 use crate::compare::{CompareError, Weighting, Windows, onset, sizes};
 use crate::model::{About, Model, Quantity, Signal, SignalKind, StateKind};
 use crate::modes;
-use crate::resonance::{self, Peak};
-use crate::response::Response;
+use crate::resonance::{self, Peak, Survey};
 use crate::response::parameters::Values;
 use crate::roles::{RoleError, Roles};
 use crate::simulate::{RecordedSignals, Ride};
@@ -202,7 +201,7 @@ impl<'a, M: Model + ?Sized> Metrics<'a, M> {
 
     /// Magnitude and frequency of the peak of each ratio. Ratios under one excitation share a response.
     fn peaks(&self, values: &Values) -> Vec<f64> {
-        let mut surveys: Vec<(usize, Response<'_, M>)> = Vec::new();
+        let mut surveys: Vec<(usize, Survey<'_, M>)> = Vec::new();
         let mut found = Vec::new();
         for ratio in &self.ratios {
             if surveys.iter().all(|(excitation, _)| *excitation != ratio.excitation) {

@@ -13,6 +13,7 @@ use super::ratios::{self, Ratio};
 use super::sides::{Measured, Side, sides};
 use super::subject::Subject;
 use crate::failure::Failure;
+use crate::lines::missed;
 use crate::parameters::out_of_range;
 use crate::stability::unstable;
 use crate::verbs::simulate::guessed;
@@ -49,6 +50,7 @@ pub(super) fn gather(subject: &Subject, arguments: &Arguments) -> Result<Compari
     let mut notices: Vec<String> = sides.iter().flat_map(odd_values).collect();
     notices.extend(sides.iter().filter_map(start_values));
     let ratios = all_ratios(&sides, both, beside.as_ref(), arguments, &mut notices)?;
+    notices.extend(sides.iter().filter_map(|side| missed_peaks(side, &ratios)));
     let (conditions, cleat_runs) = all_cleat_runs(&sides, both, beside.as_ref(), &mut notices)?;
     Ok(Comparison {
         kind: match subject {
@@ -75,6 +77,12 @@ fn odd_values(side: &Side) -> Vec<String> {
         .chain(unstable(&*side.model, &side.values))
         .map(|sentence| format!("{}: {sentence}.", side.name))
         .collect()
+}
+
+/// A notice on peaks of a side that the lines of the ratios miss.
+fn missed_peaks(side: &Side, ratios: &[Ratio]) -> Option<String> {
+    let sentence = missed(&*side.model, &side.values, &ratios.first()?.frequency)?;
+    Some(format!("{}: {sentence}.", side.name))
 }
 
 /// Notices on parameters that the fit of a campaign left at their start values: they do not describe the campaign.
