@@ -5,6 +5,7 @@ use qcar_dsl::straight::response_name;
 use qcar_runtime::model::{About, Channel, Entry, Parameter};
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::response::signal::{Term, driver, locate};
+use qcar_runtime::response::unit::unit;
 use serde_json::{Value, json};
 
 use super::{File, Subject};
@@ -92,8 +93,9 @@ fn channel(about: &About, ratio: &Ratio, response: &str) -> Option<String> {
     let (above, below) = (find(&ratio.channel.numerator)?, find(&ratio.channel.denominator)?);
     let term = |of: Term| inert(&json!({ "row": of.row, "power": of.power }));
     Some(format!(
-        "  {{ name: {}, response: {response}, numerator: {}, denominator: {} }},\n",
+        "  {{ name: {}, unit: {}, response: {response}, numerator: {}, denominator: {} }},\n",
         inert(&ratio.channel.name),
+        inert(&unit(about, ratio.channel)),
         term(above),
         term(below)
     ))

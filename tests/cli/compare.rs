@@ -277,6 +277,25 @@ fn campaigns_are_compared_as_they_were_measured() {
     let own = named(&found["transmissibility"], "channel", "pad_to_body");
     assert!(number(&own["fit"][0]) > 99.0 && number(&own["fit"][1]) < 85.0, "{own}");
     assert!(number(&own["measured"]["rms"]) > 1.0, "{own}");
+    // The mean of the coherence is that of the lines in the table.
+    let table = fs::read_to_string(folder.path().join("transmissibility.csv")).unwrap();
+    let cells = |line: &str| line.split(',').map(String::from).collect::<Vec<_>>();
+    let head = cells(table.lines().next().unwrap());
+    let [run, a, b] =
+        ["run", "coherence_a", "coherence_b"].map(|name| head.iter().position(|own| own == name).unwrap());
+    let rows = table.lines().map(cells);
+    let rows: Vec<_> = rows
+        .filter(|row| row[run] == own["run"].as_str().unwrap() && row[run + 1] == "pad_to_body")
+        .collect();
+    for (column, place) in [(a, 0), (b, 1)] {
+        let lines: Vec<f64> = rows.iter().filter_map(|row| row[column].parse().ok()).collect();
+        let mean = lines.iter().sum::<f64>() / lines.len() as f64;
+        close(number(&own["coherence"][place]), mean, 1e-3);
+        assert!(
+            lines.len() > 100 && lines.iter().all(|share| (0.0..=1.0).contains(share)),
+            "{lines:?}"
+        );
+    }
     assert!(number(&found["cleat"]["measured"]["body_z"]["after_shake"]["median"]) > 1.0);
     for file in [
         "report.html",

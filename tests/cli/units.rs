@@ -282,6 +282,32 @@ fn a_channel_has_the_unit_of_its_signals_in_every_verb() {
     assert!((magnitude(&own) / magnitude(&si) - 1e3).abs() < 1e-6, "{own}");
     let text = of(&["frf", "--frequencies", "5:10:2"], "engineering");
     assert!(text.contains("mobility_dB re 1 (mm/s)/N"), "{text}");
+    // A comparison has the same decibels, with their reference.
+    for (units, reference, size) in [("si", "(m/s)/N", 1.0), ("engineering", "(mm/s)/N", 1e3)] {
+        let out = folder.path().join(units);
+        let target = out.to_str().unwrap();
+        succeeds(&[
+            "compare",
+            model,
+            model,
+            "--frequencies",
+            "5:10:2",
+            "--units",
+            units,
+            "--out",
+            target,
+        ]);
+        let table = fs::read_to_string(out.join("transmissibility.csv")).unwrap();
+        let row: Vec<&str> = table.lines().nth(1).unwrap().split(',').collect();
+        assert_eq!(row[1..3], ["mobility", &format!("dB re 1 {reference}")], "{table}");
+        let decibels: f64 = row[4].parse().unwrap();
+        assert!(
+            (decibels - 20.0 * (size * magnitude(&si)).log10()).abs() < 1e-3,
+            "{table}"
+        );
+        let page = fs::read_to_string(out.join("report.html")).unwrap();
+        assert!(page.contains("\"unit\":\"(m/s)/N\""));
+    }
     for (units, unit, size) in [("si", "(m/s)/N", 1.0), ("engineering", "(mm/s)/N", 1e3)] {
         let listed = of(&["sensitivity", "--list"], units);
         assert!(
@@ -355,7 +381,7 @@ fn tables(folder: &Path) -> Vec<std::path::PathBuf> {
 /// Columns of words and of pure numbers, and those whose unit stands in a column `unit` beside them.
 const WITHOUT: &str = "run channel role mass axis parameter quantity unit matrix row column fitted measured_re measured_im \
     before_re before_im after_re after_im peak_error after_shake_error nrms relative standard_errors measured_rms rms_error \
-    a b difference stderr_a stderr_b";
+    a b difference stderr_a stderr_b coherence coherence_a coherence_b";
 
 fn names_its_unit(heading: &str, headings: &[&str]) -> bool {
     let pure = WITHOUT.split_whitespace().any(|name| name == heading);

@@ -332,6 +332,8 @@ fn comparison_is_whole(pages: fn(Page) -> Vec<Page>) {
             let place = format!("{subject}, {width} px, {theme}: {found}");
             check(&found, (width, &place), &COMPARISON);
             assert_eq!(found["sections"].as_array().unwrap().len(), *sections, "{place}");
+            let is_measured = !subject.contains("--params");
+            assert_eq!(figures(&found).contains(&"ratio-coherence"), is_measured, "{place}");
         }
     }
 }

@@ -69,7 +69,7 @@ function optionsOf(own, place) {
   };
 }
 
-// Magnitude and phase over frequency of a ratio in the SI unit `unit`, with a further plot `below`.
+// Magnitude and phase over frequency of a ratio in the SI unit `unit`, with further plots `below`.
 const FREQUENCY = {
   label: 'frequency',
   unit: 'Hz',
@@ -87,15 +87,24 @@ function labelled(ticks) {
   return ticks.filter(isRound).length > 1 ? isRound : isDigit;
 }
 
-function polarPlots(column, { unit, curves, below, ...how }) {
+function polarPlots(column, { unit, curves, below = [], ...how }) {
   const label = unit && unit !== '1' ? `magnitude re 1 ${pretty(unit)}` : 'magnitude';
   const parts = [
     { y: { label, unit: 'dB' }, curves: curves('magnitude') },
     { y: { label: 'phase', unit: '°' }, height: 190, curves: curves('phase') },
-    ...(below ? [below] : []),
+    ...below,
   ];
   const places = column.querySelectorAll('.canvas');
   return parts.map((part, place) => plot(places[place], { x: FREQUENCY, ...how, ...part }));
+}
+
+// The coherence of measurements, for a plot below a ratio.
+function coherencePlot(curves) {
+  return { y: { label: 'coherence', range: coherenceRange }, height: 130, digits: 5, curves };
+}
+
+function coherenceRange(u, low) {
+  return [low === null ? 0 : Math.min(0.9, low - 0.01), 1.002];
 }
 
 // Values at the positions `at`, arranged at other positions; null where there is none.

@@ -123,18 +123,9 @@ function ratioFigure(ratio) {
 }
 
 function ratioPlots(ratio, column) {
-  const coherence = {
-    y: { label: 'coherence', range: coherenceRange },
-    height: 130,
-    digits: 5,
-    curves: [{ role: 'measured', values: ratio.coherence }],
-  };
+  const below = [coherencePlot([{ role: 'measured', values: ratio.coherence }])];
   const curves = (part) => polarCurves(ratio, part);
-  return polarPlots(column, { unit: ratio.unit, at: ratio.frequency, sync: 'rig', curves, below: coherence });
-}
-
-function coherenceRange(u, low) {
-  return [low === null ? 0 : Math.min(0.9, low - 0.01), 1.002];
+  return polarPlots(column, { unit: ratio.unit, at: ratio.frequency, sync: 'rig', curves, below });
 }
 
 function polarCurves(ratio, part) {

@@ -10,8 +10,9 @@ use qcar_runtime::fit::Level;
 use qcar_runtime::fit::measure::levels;
 use qcar_runtime::fit::observation::Observation;
 use qcar_runtime::fit::quality::{Quality, quality};
-use qcar_runtime::model::Channel;
+use qcar_runtime::model::{About, Channel};
 use qcar_runtime::progress::OnProgress;
+use qcar_runtime::response::unit::unit;
 use qcar_runtime::transmissibility::Options;
 use serde::Serialize;
 
@@ -26,6 +27,8 @@ use crate::verbs::study::rig::{Polar, band, nearest, unwrapped};
 #[derive(Serialize)]
 pub(super) struct Ratio {
     pub channel: String,
+    /// SI unit of the ratio.
+    pub unit: String,
     /// File of the run; of A, if two campaigns are compared.
     pub run: Option<String>,
     /// Role: `fit` or `held_out`.
@@ -51,6 +54,8 @@ pub(super) struct Curve {
     pub value: Polar,
     /// Uncertainty to either side.
     pub band: Polar,
+    /// Share of the power that the excitation explains, 0 to 1.
+    pub coherence: Vec<f64>,
 }
 
 /// Summary of a channel.
@@ -65,6 +70,8 @@ pub(super) struct Summary<'a> {
     pub measured: Option<Largest>,
     /// Magnitude fit of each model, percent.
     pub fit: Option<[f64; 2]>,
+    /// Mean coherence of each measurement over the lines, 0 to 1.
+    pub coherence: Vec<f64>,
 }
 
 /// Largest difference of B from A.
@@ -90,6 +97,7 @@ impl Ratio {
                 [a, b] => Some([a.fit_magnitude, b.fit_magnitude]),
                 _ => None,
             },
+            coherence: self.measured.iter().map(Curve::mean_coherence).collect(),
         }
     }
 
@@ -103,6 +111,18 @@ impl Ratio {
             frequency,
             rms: rounded(square.sqrt()),
         })
+    }
+}
+
+impl Curve {
+    fn mean_coherence(&self) -> f64 {
+        let known: Vec<f64> = self
+            .coherence
+            .iter()
+            .copied()
+            .filter(|share| share.is_finite())
+            .collect();
+        rounded(known.iter().sum::<f64>() / known.len() as f64)
     }
 }
 
@@ -134,7 +154,8 @@ pub(super) fn modelled(sides: &[Side; 2], frequency: &[f64]) -> Vec<Ratio> {
             let excitation = frf::excitation(about, channel).ok()?;
             models[side].ratio("", excitation, channel, frequency)
         };
-        Some(together(channel, frequency, [value(0, a)?, value(1, b)?], [None, None]))
+        let values = [value(0, a)?, value(1, b)?];
+        Some(together((channel, unit(a, channel)), frequency, values, [None, None]))
     };
     a.channels.iter().filter(is_of_b).filter_map(ratio).collect()
 }
@@ -156,7 +177,7 @@ pub(super) fn of_campaign(sides: &[Side; 2], campaign: &Campaign) -> Result<Vec<
             continue;
         };
         let runs = [(level.name.as_str(), level.excitation), (level.name.as_str(), same)];
-        let ratio = |own: &Observation| in_run(&mut models, level, runs, own, None);
+        let ratio = |own: &Observation| in_run(&mut models, about, (level, runs), own, None);
         ratios.extend(level.observations.iter().filter_map(ratio));
     }
     Ok(ratios)
@@ -167,6 +188,7 @@ pub(super) fn of_campaign(sides: &[Side; 2], campaign: &Campaign) -> Result<Vec<
 /// # Errors
 /// Fails if a run cannot be read.
 pub(super) fn of_campaigns(sides: &[Side; 2], [a, b]: [&Measured; 2]) -> Result<Vec<Ratio>, InputError> {
+    let about = sides[0].model.about();
     let mut models = [swept(&sides[0], &a.campaign)?, swept(&sides[1], &b.campaign)?];
     let mut ratios = Vec::new();
     for level in &a.levels {
@@ -181,7 +203,7 @@ pub(super) fn of_campaigns(sides: &[Side; 2], [a, b]: [&Measured; 2]) -> Result<
         for own in &level.observations {
             let mut others = other.observations.iter();
             if let Some(second) = others.find(|second| second.channel.name == own.channel.name) {
-                ratios.extend(in_run(&mut models, level, runs, own, Some(second)));
+                ratios.extend(in_run(&mut models, about, (level, runs), own, Some(second)));
             }
         }
     }
@@ -204,13 +226,14 @@ fn alike(a: &Campaign, first: &Level, b: &Campaign, second: &Level) -> bool {
 /// A channel of a run of A and of a run of B, each run with its excitation.
 fn in_run(
     models: &mut [LevelResponses; 2],
-    level: &Level,
-    runs: [(&str, usize); 2],
+    about: &About,
+    (level, runs): (&Level, [(&str, usize); 2]),
     own: &Observation,
     other: Option<&Observation>,
 ) -> Option<Ratio> {
     let mut value = |side: usize| models[side].ratio(runs[side].0, runs[side].1, &own.channel, &own.frequency);
-    let ratio = together(&own.channel, &own.frequency, [value(0)?, value(1)?], [Some(own), other]);
+    let channel = (&own.channel, unit(about, &own.channel));
+    let ratio = together(channel, &own.frequency, [value(0)?, value(1)?], [Some(own), other]);
     Some(Ratio {
         run: Some(level.name.clone()),
         role: Some(if level.role == Role::Fit { "fit" } else { "held_out" }),
@@ -219,7 +242,7 @@ fn in_run(
 }
 
 fn together(
-    channel: &Channel,
+    (channel, unit): (&Channel, String),
     frequency: &[f64],
     [a, b]: [Vec<Complex<f64>>; 2],
     observed: [Option<&Observation>; 2],
@@ -233,6 +256,7 @@ fn together(
     };
     Ratio {
         channel: channel.name.to_string(),
+        unit,
         run: None,
         role: None,
         frequency: curve(frequency.iter().copied()),
@@ -248,6 +272,7 @@ fn together(
             .map(|(values, own)| Curve {
                 value: beside(values),
                 band: band_at(own, frequency),
+                coherence: curve(coherence_at(own, frequency)),
             })
             .collect(),
         a: beside(&a),
@@ -277,6 +302,11 @@ fn at(own: &Observation, frequency: &[f64]) -> Vec<Complex<f64>> {
         .iter()
         .map(|&f| between(&own.frequency, &own.value, f))
         .collect()
+}
+
+fn coherence_at(own: &Observation, frequency: &[f64]) -> impl Iterator<Item = f64> {
+    let lines: Vec<Complex<f64>> = own.coherence.iter().map(|&share| share.into()).collect();
+    frequency.iter().map(move |&f| between(&own.frequency, &lines, f).re)
 }
 
 fn band_at(own: &Observation, frequency: &[f64]) -> Polar {

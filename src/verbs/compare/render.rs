@@ -144,6 +144,8 @@ fn transmissibility(of: &Result) -> String {
     let mut headings = vec!["channel", "run", "change_dB", "at_Hz", "rms_dB"];
     headings.extend(["measured_dB", "at_Hz", "rms_dB"].iter().filter(|_| measured));
     headings.extend(["fit_A_%", "fit_B_%"].iter().filter(|_| fits));
+    let campaigns = all.iter().map(|own| own.coherence.len()).max().unwrap_or(0);
+    headings.extend([&[][..], &["coherence"], &["coherence_A", "coherence_B"]][campaigns]);
     let mut table = Table::with_headings(headings.into_iter().map(String::from).collect());
     for own in all {
         let mut cells = vec![own.channel.into(), own.run.unwrap_or("-").into()];
@@ -156,6 +158,7 @@ fn transmissibility(of: &Result) -> String {
                 .into_iter()
                 .filter(|_| fits),
         );
+        cells.extend((0..campaigns).map(|place| or_dash(own.coherence.get(place).copied(), 4)));
         table.row(cells);
     }
     if all.is_empty() { String::new() } else { table.text() }
@@ -246,23 +249,32 @@ pub(super) fn parameters_csv(of: &Comparison) -> String {
     out
 }
 
-/// Every channel line by line: dB and degrees.
+/// Every channel line by line: decibels, relative to 1 of the unit in which a ratio is shown, and degrees.
 pub(super) fn ratios_csv(of: &Comparison) -> String {
     let frequency = units::heading("frequency", "Hz");
     let mut out = format!(
-        "run,channel,{frequency},a_dB,a_deg,b_dB,b_deg,measured_a_dB,measured_a_deg,measured_b_dB,measured_b_deg\n"
+        "run,channel,unit,{frequency},a_dB,a_deg,b_dB,b_deg,measured_a_dB,measured_a_deg,measured_b_dB,measured_b_deg,\
+         coherence_a,coherence_b\n"
     );
     for ratio in &of.ratios {
         let run = ratio.run.as_deref().unwrap_or("");
         let measured = |place: usize| ratio.measured.get(place).map(|own| &own.value);
         let polars = [Some(&ratio.a), Some(&ratio.b), measured(0), measured(1)];
+        let (unit, shift) = (
+            units::decibels(&ratio.unit),
+            20.0 * units::value(1.0, &ratio.unit).log10(),
+        );
         for (line, frequency) in ratio.frequency.iter().enumerate() {
-            let cells = polars
-                .iter()
-                .flat_map(|polar| [polar.map(|own| own.magnitude[line]), polar.map(|own| own.phase[line])]);
-            let cells: Vec<String> = cells.map(cell).collect();
+            let cells = polars.iter().flat_map(|polar| {
+                [
+                    polar.map(|own| own.magnitude[line] + shift),
+                    polar.map(|own| own.phase[line]),
+                ]
+            });
+            let coherences = [0, 1].map(|place| ratio.measured.get(place).map(|own| own.coherence[line]));
+            let cells: Vec<String> = cells.chain(coherences).map(cell).collect();
             let frequency = units::value(*frequency, "Hz");
-            let _ = writeln!(out, "{run},{},{frequency},{}", ratio.channel, cells.join(","));
+            let _ = writeln!(out, "{run},{},{unit},{frequency},{}", ratio.channel, cells.join(","));
         }
     }
     out

@@ -87,8 +87,9 @@ pub(crate) fn compare(of: &Fitted) -> Vec<Compared<'_>> {
 
 fn csv(of: &[Compared]) -> String {
     let frequency = units::heading("frequency", "Hz");
-    let mut out =
-        format!("run,channel,unit,{frequency},measured_re,measured_im,before_re,before_im,after_re,after_im\n");
+    let mut out = format!(
+        "run,channel,unit,{frequency},measured_re,measured_im,coherence,before_re,before_im,after_re,after_im\n"
+    );
     for Compared {
         level,
         observation,
@@ -101,11 +102,12 @@ fn csv(of: &[Compared]) -> String {
         for (line, frequency) in observation.frequency.iter().enumerate() {
             let frequency = units::value(*frequency, "Hz");
             let _ = write!(out, "{},{},{shown},{frequency}", level.name, observation.channel.name);
-            for value in [observation.value[line], before[line], after[line]] {
+            let cells = [observation.value[line], before[line], after[line]].map(|value| {
                 let [re, im] = [value.re, value.im].map(|part| units::value(part, unit));
-                let _ = write!(out, ",{re},{im}");
-            }
-            out.push('\n');
+                format!("{re},{im}")
+            });
+            let [measured, before, after] = cells;
+            let _ = writeln!(out, ",{measured},{},{before},{after}", observation.coherence[line]);
         }
     }
     out

@@ -29,7 +29,7 @@ function ratios(data) {
         [', and what was measured of ', key('measured-a', 'A'), ' and ', key('measured-b', 'B')],
       ][count],
       count ? [' with a ', key('band', 'band'), ' of two standard deviations'] : null,
-      '. The lower plots show B over A.',
+      count ? '. The lower plots show B over A, and the coherence of the measurement.' : '. The lower plots show B over A.',
       zoomHint(),
     ),
     shown.control,
@@ -62,7 +62,7 @@ function ratioColumn(ratio) {
           h('span', { class: 'after' }, of('B', b)),
         )
       : null,
-    ['magnitude', 'phase', 'change'].map((part) =>
+    ['magnitude', 'phase', 'change', ...(ratio.measured.length ? ['coherence'] : [])].map((part) =>
       figure(
         `ratio-${part}`,
         `${ratio.run ? `${runName(ratio.run)}: ` : ''}${part} of ${channelName(ratio.channel)}`,
@@ -83,7 +83,9 @@ function comparedPlots(ratio, column) {
     ],
   };
   const curves = (part) => sideCurves(ratio, part);
-  return polarPlots(column, { at: ratio.frequency, sync: 'ratios', curves, below: change });
+  const coherences = ratio.measured.map(({ coherence }, at) => ({ role: measuredRoles(ratio)[at], values: coherence }));
+  const below = [change, ...(coherences.length ? [coherencePlot(coherences)] : [])];
+  return polarPlots(column, { unit: ratio.unit, at: ratio.frequency, sync: 'ratios', curves, below });
 }
 
 // The axis always includes zero.
@@ -91,8 +93,12 @@ function aroundZero(u, low, high) {
   return padded(u, Math.min(0, low === null ? 0 : low), Math.max(0.1, high === null ? 0 : high));
 }
 
+function measuredRoles({ measured: all }) {
+  return all.length > 1 ? ['measured-a', 'measured-b'] : ['measured'];
+}
+
 function sideCurves(ratio, part) {
-  const roles = ratio.measured.length > 1 ? ['measured-a', 'measured-b'] : ['measured'];
+  const roles = measuredRoles(ratio);
   const observed = ratio.measured.map(({ value, band }, at) => ({
     role: roles[at],
     values: value[part],
@@ -103,6 +109,8 @@ function sideCurves(ratio, part) {
 
 function ratioTable({ transmissibility: all }) {
   const [runs, observed, fits] = [(own) => own.run, (own) => own.measured, (own) => own.fit].map((of) => all.some(of));
+  const campaigns = Math.max(...all.map((own) => own.coherence.length));
+  const coherences = [[], ['coherence'], ['coherence of A', 'of B']][campaigns];
   const change = (own) =>
     own ? [decibels(own.magnitude), `${number(own.frequency)} Hz`, `${number(own.rms, 2)} dB`] : ['–', '–', '–'];
   const three = (name) => [
@@ -123,6 +131,7 @@ function ratioTable({ transmissibility: all }) {
             ['of B', 'number'],
           ]
         : []),
+      ...coherences.map((name) => [name, 'number']),
     ],
     all.map((own) => [
       channelName(own.channel),
@@ -130,6 +139,7 @@ function ratioTable({ transmissibility: all }) {
       ...change(own.change),
       ...(observed ? change(own.measured) : []),
       ...(fits ? (own.fit || [null, null]).map((fit) => `${number(fit)} %`) : []),
+      ...coherences.map((_, at) => (at < own.coherence.length ? number(own.coherence[at], 4) : '–')),
     ]),
   );
 }

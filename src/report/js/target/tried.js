@@ -80,8 +80,8 @@ function responses({ parameters, moves }) {
       '.',
     ],
     knobs: parameters.map((own, place) => ({ ...own, value: own.design, gives: (value) => given(place, value) })),
-    ratios: channels.map(({ name }) => {
-      const ratio = { channel: name, frequency };
+    ratios: channels.map(({ name, unit }) => {
+      const ratio = { channel: name, unit, frequency };
       const [before, after] = [polar(ratio, today), polar(ratio, {})];
       const curves = (part) => [
         { role: 'before', label: 'today', values: before[part] },
