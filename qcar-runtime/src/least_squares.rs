@@ -12,12 +12,15 @@ mod normal;
 mod region;
 // Reflection of a step at the bounds.
 mod reflect;
+// A problem with some variables fixed.
+mod held;
 
 // Covariance and rank from the Jacobian at the optimum.
 pub mod information;
 // Profile of the cost over one parameter, with all others refitted.
 pub mod profile;
 
+use held::Held;
 use nalgebra::{DMatrix, DVector};
 use normal::NormalEquations;
 pub(crate) use normal::gram;
@@ -74,7 +77,9 @@ pub struct Options {
     /// Reduction of the cost that a full Gauss-Newton step predicts: half the squared Newton decrement (Boyd and
     /// Vandenberghe, "Convex Optimization", section 9.5.1). If the residuals are in standard deviations, no variable is
     /// further than `sqrt(2 decrement)` standard errors from the minimum. A step beyond a bound does not count, because
-    /// which variables end at their bounds is part of the result. Zero switches the test off.
+    /// which variables end at their bounds is part of the result. A search also ends if a shorter step predicts less
+    /// than that and lowers the cost no more: the derivatives then are no more accurate than that. Zero switches both
+    /// tests off.
     pub decrement: f64,
     /// Most evaluations of the residual.
     pub evaluations: usize,
@@ -157,6 +162,20 @@ pub fn minimize<P: Problem + ?Sized>(problem: &mut P, start: &[f64], bounds: &Bo
     let mut search = Search::new(problem, start, bounds);
     let stop = search.run(options);
     search.finish(stop)
+}
+
+/// As [`minimize`], with some variables held at their start. The result is that for all variables.
+pub fn minimize_holding<P: Problem + ?Sized>(
+    problem: &mut P,
+    start: &[f64],
+    is_held: &[bool],
+    bounds: &Bounds,
+    options: &Options,
+) -> Outcome {
+    let mut held = Held::new(problem, start.to_vec(), is_held);
+    let (start, bounds) = (held.varied_of(start), held.bounds(bounds));
+    let found = minimize(&mut held, &start, &bounds, options);
+    held.outcome(found)
 }
 
 /// A point with its residual and Jacobian.
@@ -312,6 +331,9 @@ impl<'a, P: Problem + ?Sized> Search<'a, P> {
     /// The tests of Moré (1978), section 8, on the predicted and the actual reduction.
     fn settled(&self, step: &Step, interior: &Interior, cost: f64, reduction: f64, options: &Options) -> Option<Stop> {
         let ratio = reduction / step.predicted;
+        if reduction <= 0.0 && step.predicted < options.decrement {
+            return Some(Stop::Cost);
+        }
         if reduction.abs() <= options.cost * cost && step.predicted <= options.cost * cost && ratio <= 2.0 {
             return Some(Stop::Cost);
         }

@@ -5,6 +5,7 @@
 //! the profile likelihood", Bioinformatics 25 (2009). An end is open if the threshold is not reached within the bounds:
 //! the residuals do not determine the variable on that side.
 
+use super::held::Held;
 use super::{Bounds, Options, Outcome, Problem, minimize};
 
 /// The variable to profile.
@@ -81,10 +82,11 @@ impl<P: Problem + ?Sized> Walk<'_, P> {
             true => self.bounds.lower[self.of.variable],
             false => self.bounds.upper[self.of.variable],
         };
+        let minimum = self.minimum;
         let mut step = self.of.step;
         let mut here = Place {
-            value: self.minimum.x[self.of.variable],
-            others: without(&self.minimum.x, self.of.variable),
+            value: minimum.x[self.of.variable],
+            others: self.held(minimum.x[self.of.variable]).varied_of(&minimum.x),
             rise: 0.0,
         };
         for _ in 0..STEPS {
@@ -136,15 +138,21 @@ impl<P: Problem + ?Sized> Walk<'_, P> {
         0.5 * (below.value + above.value)
     }
 
+    /// The problem with the variable fixed.
+    fn held(&mut self, value: f64) -> Held<'_, P> {
+        let mut x = self.minimum.x.clone();
+        x[self.of.variable] = value;
+        let mut is_held = vec![false; x.len()];
+        is_held[self.of.variable] = true;
+        Held::new(self.problem, x, &is_held)
+    }
+
     /// Smallest cost with the variable fixed; infinite if there is none.
     fn at(&mut self, value: f64, others: &[f64]) -> Place {
-        let variable = self.of.variable;
-        let bounds = Bounds {
-            lower: without(&self.bounds.lower, variable),
-            upper: without(&self.bounds.upper, variable),
-        };
-        let mut held = Held::new(self.problem, variable, value);
-        let found = minimize(&mut held, others, &bounds, self.options);
+        let (bounds, options) = (self.bounds, self.options);
+        let mut held = self.held(value);
+        let bounds = held.bounds(bounds);
+        let found = minimize(&mut held, others, &bounds, options);
         let rise = found.cost - self.minimum.cost;
         let rise = if rise.is_nan() { f64::INFINITY } else { rise };
         if rise.is_finite() {
@@ -155,62 +163,5 @@ impl<P: Problem + ?Sized> Walk<'_, P> {
             others: found.x,
             rise,
         }
-    }
-}
-
-fn without(all: &[f64], place: usize) -> Vec<f64> {
-    let mut others = all.to_vec();
-    others.remove(place);
-    others
-}
-
-/// A problem with one variable fixed.
-struct Held<'a, P: ?Sized> {
-    problem: &'a mut P,
-    variable: usize,
-    x: Vec<f64>,
-    jacobian: Vec<f64>,
-}
-
-impl<'a, P: Problem + ?Sized> Held<'a, P> {
-    fn new(problem: &'a mut P, variable: usize, value: f64) -> Self {
-        let mut x = vec![0.0; problem.variables()];
-        x[variable] = value;
-        let jacobian = vec![0.0; problem.variables() * problem.residuals()];
-        Self {
-            problem,
-            variable,
-            x,
-            jacobian,
-        }
-    }
-
-    fn place(&mut self, others: &[f64]) {
-        let (before, after) = others.split_at(self.variable);
-        self.x[..self.variable].copy_from_slice(before);
-        self.x[self.variable + 1..].copy_from_slice(after);
-    }
-}
-
-impl<P: Problem + ?Sized> Problem for Held<'_, P> {
-    fn variables(&self) -> usize {
-        self.x.len() - 1
-    }
-
-    fn residuals(&self) -> usize {
-        self.problem.residuals()
-    }
-
-    fn evaluate(&mut self, others: &[f64], residual: &mut [f64], jacobian: &mut [f64]) {
-        self.place(others);
-        self.problem.evaluate(&self.x, residual, &mut self.jacobian);
-        let (before, after) = (self.variable * residual.len(), (self.variable + 1) * residual.len());
-        jacobian[..before].copy_from_slice(&self.jacobian[..before]);
-        jacobian[before..].copy_from_slice(&self.jacobian[after..]);
-    }
-
-    fn evaluate_residual(&mut self, others: &[f64], residual: &mut [f64]) -> bool {
-        self.place(others);
-        self.problem.evaluate_residual(&self.x, residual)
     }
 }

@@ -111,6 +111,14 @@ impl Prediction {
             .zip(unsteady)
             .for_each(|(value, unsteady)| *value += unsteady);
     }
+
+    /// Takes [added](Self::add) values away again.
+    pub fn subtract(&mut self, unsteady: &[Complex<f64>]) {
+        self.value
+            .iter_mut()
+            .zip(unsteady)
+            .for_each(|(value, unsteady)| *value -= unsteady);
+    }
 }
 
 /// Reason why a model cannot predict the evidence.

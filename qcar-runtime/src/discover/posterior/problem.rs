@@ -51,11 +51,11 @@ pub struct Posterior<'a> {
     pub unsteady: Vec<Vec<Complex<f64>>>,
     /// The last prediction and the last one with derivatives. The evaluation of an accepted step and the next round use
     /// them again.
-    pub cache: Vec<Cached>,
+    cache: Vec<Cached>,
 }
 
 /// Prediction of the fitted runs at a point.
-pub struct Cached {
+struct Cached {
     at: Vec<f64>,
     /// Predictions of the sweeps, always with derivatives.
     swept: Vec<Prediction>,
@@ -110,6 +110,15 @@ impl<'a> Posterior<'a> {
         posterior.has_discrepancy = posterior.discrepancy.is_some();
         posterior.centre = refit.centre.clone();
         posterior
+    }
+
+    /// Replaces the non-steady part of the sweeps, also in the kept predictions.
+    pub fn change_unsteady(&mut self, unsteady: Vec<Vec<Complex<f64>>>) {
+        for swept in self.cache.iter_mut().flat_map(|own| &mut own.swept) {
+            swept.subtract(&self.unsteady[swept.series]);
+            swept.add(&unsteady[swept.series]);
+        }
+        self.unsteady = unsteady;
     }
 
     /// Distance of a free parameter from the centre of its prior in standard deviations, and its derivative.

@@ -6,7 +6,7 @@ use super::problem::Posterior;
 use super::refit::Refit;
 use crate::discover::noise::{CALIBRATION_BOUND, Factors, Known};
 use crate::discover::observe::PredictError;
-use crate::least_squares::{Bounds, Options, Outcome, Problem, minimize};
+use crate::least_squares::{Bounds, Options, Outcome, Problem, minimize, minimize_holding};
 
 /// Largest log factor of a side in prior standard deviations, so that a fit cannot explain a missing effect by an
 /// unrealistic difference of the sides.
@@ -15,9 +15,6 @@ const SIDE_BOUND: f64 = 3.0;
 /// Largest sensor error in prior standard deviations if a discrepancy is fitted. Larger errors do not occur in
 /// practice; the prior limits them, and this bound is only a safeguard.
 const ERROR_BOUND: f64 = 6.0;
-
-/// Largest change of a sensor error that is held, in prior standard deviations: the search needs an interval.
-const HELD: f64 = 1e-3;
 
 /// Predicted gain in log posterior density that ends a search among candidates. The unknowns are then within a tenth of
 /// their standard errors from the maximum. The log evidence is too low by a hundredth of what one unknown gains by
@@ -41,7 +38,10 @@ impl Posterior<'_> {
         let options = options(self.decrement, evaluations);
         self.start = start.to_vec();
         let bounds = self.bounds();
-        let outcome = minimize(self, start, &bounds, &options);
+        let outcome = match self.nuisance.known {
+            Known::Errors => minimize_holding(self, start, &self.held(), &bounds, &options),
+            Known::Nothing | Known::Class => minimize(self, start, &bounds, &options),
+        };
         self.failure.take().map_or(Ok(outcome), Err)
     }
 
@@ -61,18 +61,17 @@ impl Posterior<'_> {
             .map(|f| f.lower)
             .chain(priors.iter().map(|bound| -bound));
         let upper = self.free.iter().map(|f| f.upper).chain(priors.iter().copied());
-        let mut bounds = Bounds {
+        Bounds {
             lower: lower.collect(),
             upper: upper.collect(),
-        };
-        if self.nuisance.known == Known::Errors {
-            for (k, sigma) in sensors[..self.nuisance.of_calibration()].iter().enumerate() {
-                let place = self.free.len() + k;
-                bounds.lower[place] = self.start[place] - HELD * sigma;
-                bounds.upper[place] = self.start[place] + HELD * sigma;
-            }
         }
-        bounds
+    }
+
+    /// True for each variable that is an error of a sensor.
+    fn held(&self) -> Vec<bool> {
+        let first = self.free.len();
+        let of_sensors = first..first + self.nuisance.of_calibration();
+        (0..self.variables()).map(|k| of_sensors.contains(&k)).collect()
     }
 
     /// Alternates between searches and updates of the discrepancy and of the accuracy class.

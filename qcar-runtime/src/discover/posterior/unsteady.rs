@@ -27,8 +27,7 @@ pub fn add_unsteady(model: &dyn Model, refit: Refit, evidence: &Evidence) -> Res
     let mut refit = refit;
     for _ in 0..ROUNDS {
         let conditions = refit.nuisance.conditions(evidence, &refit.coefficients);
-        posterior.cache.clear();
-        posterior.unsteady = unsteady(model, &refit.values, &conditions, evidence, Role::Fit)?;
+        posterior.change_unsteady(unsteady(model, &refit.values, &conditions, evidence, Role::Fit)?);
         let place = posterior.place(&refit);
         refit = posterior.short_fit(place)?;
     }
