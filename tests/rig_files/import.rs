@@ -107,7 +107,7 @@ fn sweeps_of_one_recording_become_runs() {
 #[test]
 fn a_channel_without_an_axis_is_along_the_only_axis_of_a_model() {
     let folder = tempfile::tempdir().unwrap();
-    let mut sweep = sweeps().remove(0);
+    let mut sweep = sweeps()[0].clone();
     let names = ["Platen", "Hub", "Body Lateral"];
     for (channel, name) in sweep.channels.iter_mut().zip(names) {
         channel.name = name.to_string();
