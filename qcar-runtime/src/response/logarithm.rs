@@ -111,13 +111,11 @@ impl Logarithms {
         for (&column, entries) in &self.sources[term] {
             let range = self.slope_range(term, column);
             let (magnitude, angle) = (&mut self.d_magnitude[range.clone()], &mut self.d_angle[range]);
-            for (place, &entry) in entries.iter().enumerate() {
+            magnitude.fill(0.0);
+            angle.fill(0.0);
+            for &entry in entries {
                 let into = (&mut *magnitude, &mut *angle);
-                let by = (&self.reciprocal.0[..], &self.reciprocal.1[..]);
-                match place {
-                    0 => multiply(into, response.entry(entry), by, |to, product| *to = product),
-                    _ => multiply(into, response.entry(entry), by, |to, product| *to += product),
-                }
+                add_product(into, response.entry(entry), (&self.reciprocal.0, &self.reciprocal.1));
             }
         }
     }
@@ -132,14 +130,14 @@ impl Logarithms {
     }
 }
 
-/// The product `a b` of complex rows, put into another row or added to it.
-fn multiply(into: (&mut [f64], &mut [f64]), a: (&[f64], &[f64]), b: (&[f64], &[f64]), put: impl Fn(&mut f64, f64)) {
+/// `into += a b` of complex rows.
+fn add_product(into: (&mut [f64], &mut [f64]), a: (&[f64], &[f64]), b: (&[f64], &[f64])) {
     let lines = into.0.len();
     let (into_re, into_im) = (&mut into.0[..lines], &mut into.1[..lines]);
     let (a_re, a_im, b_re, b_im) = (&a.0[..lines], &a.1[..lines], &b.0[..lines], &b.1[..lines]);
     for line in 0..lines {
-        put(&mut into_re[line], a_re[line] * b_re[line] - a_im[line] * b_im[line]);
-        put(&mut into_im[line], a_re[line] * b_im[line] + a_im[line] * b_re[line]);
+        into_re[line] += a_re[line] * b_re[line] - a_im[line] * b_im[line];
+        into_im[line] += a_re[line] * b_im[line] + a_im[line] * b_re[line];
     }
 }
 
