@@ -77,9 +77,7 @@ pub struct Options {
     /// Reduction of the cost that a full Gauss-Newton step predicts: half the squared Newton decrement (Boyd and
     /// Vandenberghe, "Convex Optimization", section 9.5.1). If the residuals are in standard deviations, no variable is
     /// further than `sqrt(2 decrement)` standard errors from the minimum. A step beyond a bound does not count, because
-    /// which variables end at their bounds is part of the result. A search also ends if a shorter step predicts less
-    /// than that and lowers the cost no more: the derivatives then are no more accurate than that. Zero switches both
-    /// tests off.
+    /// which variables end at their bounds is part of the result. Zero switches the test off.
     pub decrement: f64,
     /// Most evaluations of the residual.
     pub evaluations: usize,
@@ -331,9 +329,6 @@ impl<'a, P: Problem + ?Sized> Search<'a, P> {
     /// The tests of Moré (1978), section 8, on the predicted and the actual reduction.
     fn settled(&self, step: &Step, interior: &Interior, cost: f64, reduction: f64, options: &Options) -> Option<Stop> {
         let ratio = reduction / step.predicted;
-        if reduction <= 0.0 && step.predicted < options.decrement {
-            return Some(Stop::Cost);
-        }
         if reduction.abs() <= options.cost * cost && step.predicted <= options.cost * cost && ratio <= 2.0 {
             return Some(Stop::Cost);
         }
