@@ -44,7 +44,8 @@ impl<'a, P: Problem + ?Sized> Held<'a, P> {
         self.place(&found.x);
         let (rows, columns) = (self.problem.residuals(), self.x.len());
         let (mut residual, mut jacobian) = (DVector::zeros(rows), DMatrix::zeros(rows, columns));
-        self.problem.evaluate(&self.x, residual.as_mut_slice(), jacobian.as_mut_slice());
+        self.problem
+            .evaluate(&self.x, residual.as_mut_slice(), jacobian.as_mut_slice());
         let mut at_bound = vec![0; columns];
         for (&k, side) in self.varied.iter().zip(&found.at_bound) {
             at_bound[k] = *side;

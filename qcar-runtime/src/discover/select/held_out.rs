@@ -1,5 +1,7 @@
 //! Checks sets on the held-out runs, which no fit has used.
 
+use std::collections::HashSet;
+
 use rayon::prelude::*;
 
 use super::set::{Set, best_base, excess, explained_share, held_out_judge, is_part, most_probable_first};
@@ -15,6 +17,9 @@ use crate::discover::posterior::Explanation;
 ///
 /// The held-out runs judge only the additional effects that they excite: beside a friction that cleat runs show, a stop
 /// that K&C curves alone reach is withdrawn only if the prediction becomes certainly worse with it.
+///
+/// Of several sets with the same effects, only the most probable one is compared: another form or a local minimum leaves
+/// more, which these effects need not leave.
 ///
 /// Fewer effects that are no part of the set replace it if they explain nearly all of the residual and predict the
 /// held-out runs at least as well: several effects can imitate a law whose form is a little different.
@@ -49,7 +54,9 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
         };
         let is_less = |other: &usize| sets[*other].names().len() < set.names().len();
         let is_answer = |other: &usize| is_less(other) && !sets[*other].has_magnitude_at_bound();
-        let parts = most_probable_first(sets, (0..sets.len()).filter(is_answer));
+        let mut parts = most_probable_first(sets, (0..sets.len()).filter(is_answer));
+        let mut known = HashSet::new();
+        parts.retain(|&part| known.insert(sets[part].names()));
         match parts.into_par_iter().find_first(replaces) {
             Some(part) => best = part,
             None => return best,
