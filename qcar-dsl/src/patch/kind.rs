@@ -22,7 +22,7 @@ const STEPS: usize = 3;
 /// The parts of a model, to compare what is near its places.
 pub struct Parts<'a> {
     roles: &'a Roles,
-    statements: Vec<Said<'a>>,
+    statements: Vec<Line<'a>>,
     /// The positions of the statements that declare a name.
     declared: HashMap<&'a str, Vec<usize>>,
     /// The positions of the statements that contain a name.
@@ -34,7 +34,7 @@ pub struct Parts<'a> {
 }
 
 /// A statement in one line, with the names of the model in it.
-struct Said<'a> {
+struct Line<'a> {
     statement: &'a Statement,
     direction: &'a str,
     text: String,
@@ -59,11 +59,11 @@ impl<'a> Parts<'a> {
                 declared.entry(&name.text).or_default().push(at);
             }
         }
-        let said = |(direction, statement)| Said::of(direction, statement, &declared);
-        let statements: Vec<Said> = all.into_iter().map(said).collect();
+        let line = |(direction, statement)| Line::of(direction, statement, &declared);
+        let statements: Vec<Line> = all.into_iter().map(line).collect();
         let mut mentioned = HashMap::<&str, Vec<usize>>::default();
-        for (at, said) in statements.iter().enumerate() {
-            for name in said.names.iter().copied().collect::<BTreeSet<_>>() {
+        for (at, line) in statements.iter().enumerate() {
+            for name in line.names.iter().copied().collect::<BTreeSet<_>>() {
                 mentioned.entry(name).or_default().push(at);
             }
         }
@@ -120,7 +120,7 @@ impl<'a> Parts<'a> {
     /// True if a name is that of something that moves or connects. All places share the roads and motions.
     fn is_part(&self, name: &str) -> bool {
         let mut declaring = self.declared[name].iter().map(|&at| &self.statements[at]);
-        declaring.any(|said| said.connects() && !said.is_driven())
+        declaring.any(|line| line.connects() && !line.is_driven())
     }
 
     /// Statements with numbers in place of the names, and what follows from the rest of the model: roles, corner, number
@@ -129,15 +129,15 @@ impl<'a> Parts<'a> {
         let mut numbers = Numbers::default();
         let own = numbers.of(&place.name).to_string();
         let mut lines = vec![format!("{own} along {}", place.direction)];
-        for said in near.iter().map(|&at| &self.statements[at]) {
-            let text = with_names(&said.text, |word| {
+        for line in near.iter().map(|&at| &self.statements[at]) {
+            let text = with_names(&line.text, |word| {
                 let name = self.declared.get_key_value(word).map(|(name, _)| *name);
                 name.map(|name| numbers.of(name).to_string())
             });
             lines.push(format!(
                 "{}: {text} {}",
-                said.direction,
-                self.context(said, &mut numbers)
+                line.direction,
+                self.context(line, &mut numbers)
             ));
         }
         let corner = self.roles.of_corner(place.key());
@@ -150,16 +150,16 @@ impl<'a> Parts<'a> {
     }
 
     /// What a statement does not say of what it declares.
-    fn context(&self, said: &Said, numbers: &mut Numbers<'a>) -> String {
-        let Some(name) = said.statement.name() else {
+    fn context(&self, line: &Line, numbers: &mut Numbers<'a>) -> String {
+        let Some(name) = line.statement.name() else {
             return String::new();
         };
-        let (along, name) = (said.direction, name.text.as_str());
+        let (along, name) = (line.direction, name.text.as_str());
         let roles = |all: &[&str], has: &dyn Fn(&str) -> bool| {
             let own: Vec<&str> = all.iter().copied().filter(|role| has(role)).collect();
             own.join(" ")
         };
-        match said.statement {
+        match line.statement {
             Statement::Link(_) => roles(&OF_LINKS, &|role| self.roles.is_link(along, name, role)),
             Statement::Coordinate(_) => roles(&OF_MASSES, &|role| self.roles.is_mass(along, name, role)),
             Statement::Parameter(_) | Statement::Let(_) => {
@@ -173,15 +173,15 @@ impl<'a> Parts<'a> {
     }
 }
 
-impl<'a> Said<'a> {
-    fn of(direction: &'a str, statement: &'a Statement, declared: &HashMap<&'a str, Vec<usize>>) -> Said<'a> {
+impl<'a> Line<'a> {
+    fn of(direction: &'a str, statement: &'a Statement, declared: &HashMap<&'a str, Vec<usize>>) -> Line<'a> {
         let text = one_line(statement);
         let mut names = Vec::new();
         with_names(&text, |word| {
             names.extend(declared.get_key_value(word).map(|(name, _)| *name));
             None
         });
-        Said {
+        Line {
             statement,
             direction,
             text,
