@@ -31,8 +31,8 @@ const LINES: usize = 340;
 const NARROW: f64 = 0.01;
 /// States up to which such modes are searched: the eigenvalues of more take longer than the response at all lines.
 const MOST_STATES: usize = 60;
-/// The shares of the frequency by which the sides of an undamped mode are from it. A pole is ten times as high at the
-/// second.
+/// Distances from an undamped mode, relative to its frequency, at which a ratio is compared: if the ratio is infinite at
+/// the mode, it is ten times as large at the second.
 const BESIDE: [f64; 2] = [3e-5, 3e-6];
 /// Number of lines in each refinement between the neighbours of the largest, and number of refinements.
 const REFINED_LINES: usize = 9;

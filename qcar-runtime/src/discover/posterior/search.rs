@@ -67,7 +67,7 @@ impl Posterior<'_> {
         }
     }
 
-    /// True for each variable that is an error of a sensor.
+    /// True for each variable that a fit with known errors holds: those of the sensors, but not a suspected error.
     fn held(&self) -> Vec<bool> {
         let first = self.free.len();
         let of_sensors = first..first + self.nuisance.of_calibration();

@@ -18,8 +18,8 @@ use crate::discover::posterior::Explanation;
 /// The held-out runs judge only the additional effects that they excite: beside a friction that cleat runs show, a stop
 /// that K&C curves alone reach is withdrawn only if the prediction becomes certainly worse with it.
 ///
-/// Of several sets with the same effects, only the most probable one is compared: another form or a local minimum leaves
-/// more, which these effects need not leave.
+/// Of several sets with the same effects, only the most probable one is compared: a poorer fit leaves a residual that the
+/// same effects can explain.
 ///
 /// Fewer effects that are no part of the set replace it if they explain nearly all of the residual and predict the
 /// held-out runs at least as well: several effects can imitate a law whose form is a little different.
