@@ -6,6 +6,8 @@
 mod dual;
 // Every data set of NIST, from every start.
 mod nist;
+// Some variables held.
+mod holding;
 // How far a variable may be moved.
 mod profile;
 
