@@ -297,7 +297,9 @@ fn a_law_takes_the_place_of_a_class_only_where_it_explains_more_than_its_members
     };
     let class = answer_of(bench, &evidence(0.0, &LEVELS));
     assert_eq!(class.verdict, Verdict::Class);
-    assert_eq!(class.alternatives, 2);
+    let (certain, alternatives) = class.certain_and_alternatives();
+    assert!(certain.is_empty());
+    assert_eq!(alternatives.iter().map(|own| own.len()).collect::<Vec<_>>(), [1, 1]);
     assert!(class.learned.is_none());
 }
 

@@ -57,6 +57,7 @@ mod wrong_side;
 mod unfinished;
 
 use finding::runs_of;
+use verdict::listed;
 use wrong_side::wrong_side;
 
 /// Find the effect that a campaign shows and its model lacks
@@ -347,17 +348,26 @@ fn extended(bench: &Bench, finding: &Finding) -> Option<Patched> {
     bench.patched(&finding.effect, &finding.at, finding.form.as_deref())
 }
 
-/// The units of the parameters of each finding. Certain findings are added one after another; alternatives of a class
-/// are each added to the model with the certain ones.
+/// The units of the parameters of each finding. The findings are added one after another, those of each alternative of
+/// a class to the model with the certain ones.
 fn units(mut bench: Bench, discovery: &Discovery) -> Vec<BTreeMap<String, String>> {
+    let (certain, alternatives) = discovery.certain_and_alternatives();
+    let mut units = units_of(&mut bench, certain);
+    for alternative in alternatives {
+        units.extend(units_of(&mut bench.clone(), alternative));
+    }
+    units
+}
+
+/// The units of the parameters of findings that are added to the bench one after another.
+fn units_of(bench: &mut Bench, findings: &[Finding]) -> Vec<BTreeMap<String, String>> {
     let mut units = Vec::new();
-    let found = discovery.certain_and_alternatives().0.len();
-    for (place, finding) in discovery.findings.iter().enumerate() {
-        let patched = extended(&bench, finding);
+    for finding in findings {
+        let patched = extended(bench, finding);
         let own = patched.iter().flat_map(|patched| &patched.parameters);
         units.push(own.map(|own| (own.effect_name.clone(), own.unit.clone())).collect());
-        if let Some(patched) = patched.filter(|own| place < found && own.signals.is_empty()) {
-            bench = bench.holding(patched.model);
+        if let Some(patched) = patched.filter(|own| own.signals.is_empty()) {
+            *bench = bench.clone().holding(patched.model);
         }
     }
     units
@@ -409,8 +419,10 @@ pub(crate) fn write(answer: &mut Answer, folder: &Path) -> Result<(), Failure> {
         learned.write(folder)?;
     }
     let (campaign, discovery) = (&answer.campaign, &answer.discovery);
-    let best = discovery.certain_and_alternatives().1.first();
-    let best = best.map_or_else(String::new, |own| format!(", {} at {} for one", own.effect, own.at));
+    let best = discovery.certain_and_alternatives().1;
+    let best = best
+        .first()
+        .map_or_else(String::new, |own| format!(", {} for one", listed(own)));
     let heading = format!("{campaign}: what explains its runs best{best}");
     put(
         folder,

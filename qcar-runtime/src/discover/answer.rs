@@ -17,7 +17,7 @@ pub enum Verdict {
     Unknown,
 }
 
-/// An effect of the answer, or one of several indistinguishable effects.
+/// An effect of the answer, or of one of several alternatives that the data cannot distinguish.
 #[derive(Clone, Debug)]
 pub struct Finding {
     /// Name of the effect.
@@ -26,6 +26,9 @@ pub struct Finding {
     pub at: String,
     /// Form that fits best; `None` if the effect has only one.
     pub form: Option<String>,
+    /// The alternative of a class to which it belongs, 0 for the most probable one; `None` if it is certain. Effects of
+    /// one alternative explain the runs together.
+    pub alternative: Option<usize>,
     /// Parameters: name, value and standard error, SI. The error is 0 for a fixed parameter.
     pub parameters: Vec<(String, f64, f64)>,
     /// Increase of the log evidence by all findings together.
@@ -78,11 +81,9 @@ pub struct Discovery {
     pub candidates: Vec<Probable>,
     /// Nuisance effects that the data show: those fitted with the base model, and those fitted with the findings.
     pub nuisances: [Vec<Finding>; 2],
-    /// Effects of the answer. For a class, the effects common to all members come first, then the alternatives, best
-    /// first.
+    /// Effects of the answer. For a class, the effects common to all alternatives come first, then those of each
+    /// alternative, most probable first.
     pub findings: Vec<Finding>,
-    /// Number of alternatives at the end of `findings`; 0 if the verdict is not `Class`.
-    pub alternatives: usize,
     /// Explanation by the base model.
     pub before: Explanation,
     /// Explanation with all findings, or with the best of a class; equal to `before` without findings.
@@ -121,8 +122,13 @@ pub struct DetectionLimit {
 
 impl Discovery {
     /// Splits the findings into those that are certain and the alternatives of a class.
-    pub fn certain_and_alternatives(&self) -> (&[Finding], &[Finding]) {
-        self.findings.split_at(self.findings.len() - self.alternatives)
+    pub fn certain_and_alternatives(&self) -> (&[Finding], Vec<&[Finding]>) {
+        let certain = self.findings.partition_point(|own| own.alternative.is_none());
+        let (certain, others) = self.findings.split_at(certain);
+        (
+            certain,
+            others.chunk_by(|a, b| a.alternative == b.alternative).collect(),
+        )
     }
 }
 

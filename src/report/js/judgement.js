@@ -49,8 +49,9 @@ function consequence(discover, { verdict: kind }, likely) {
   const [which, gap] = judged;
   const before = `On ${which} runs the residual of the baseline model is ${number(gap.before)} standard deviations`;
   const after = `that of the extended model ${number(gap.after)}; noise alone gives 1`;
-  const [best, ...alike] = discover.effects.filter((effect) => effect.one_of);
-  const chosen = best || discover.effects[0];
+  const [best, ...others] = alternatives(discover.effects);
+  const [chosen] = best || discover.effects;
+  const instead = others.map((own) => own.map(placed).join(' and ')).join(', or ');
   const place = likely
     ? ` Something at ${words(likely.place)} could explain up to ${percent(likely.ceiling)} of the residuals of the sweeps.`
     : '';
@@ -60,7 +61,7 @@ function consequence(discover, { verdict: kind }, likely) {
     case 'found':
       return `${before}, ${after}.${likelihood(discover)}${nextBest(chosen)} ${mostLeft(discover)}`;
     case 'class':
-      return `${before}; with ${added(discover.effects)} it is ${number(gap.after)}; noise alone gives 1. With ${alike.map(placed).join(' or ')} instead the fitted runs are explained equally well, so no model file is written.${nextBest(chosen)} ${mostLeft(discover)}`;
+      return `${before}; with ${added(discover.effects)} it is ${number(gap.after)}; noise alone gives 1. With ${instead} instead the fitted runs are explained equally well, so no model file is written.${nextBest(chosen)} ${mostLeft(discover)}`;
     default:
       return `${before}; noise alone gives 1. No effect of the catalogue explains it. The map below shows where it occurs.${place}${learnedLaw(discover)} ${mostLeft(discover)}`;
   }
@@ -136,19 +137,23 @@ function placed(effect) {
   return `${words(effect.name)} at ${words(effect.at)}`;
 }
 
-// The title of an effect. Those of a class are alternatives.
+// The title of an effect. Those of a class belong to alternatives.
 function effectTitle(effect, effects) {
   if (!effect.one_of) return placed(effect);
-  return `${effect === oneOf(effects) ? 'Either' : 'Or'} ${placed(effect)}`;
+  const own = alternatives(effects).findIndex((alternative) => alternative.includes(effect));
+  if (alternatives(effects)[own][0] !== effect) return `With ${placed(effect)}`;
+  return `${own === 0 ? 'Either' : 'Or'} ${placed(effect)}`;
 }
 
-// The best member of the class.
-function oneOf(effects) {
-  return effects.find((effect) => effect.one_of);
+// The effects of each alternative of a class, the most probable alternative first.
+function alternatives(effects) {
+  const some = effects.filter((effect) => effect.one_of);
+  const numbers = [...new Set(some.map(({ alternative }) => alternative))];
+  return numbers.map((number) => some.filter(({ alternative }) => alternative === number));
 }
 
 // The effects that the extended model adds to the baseline; `null` if there are none.
 function added(effects) {
-  const own = effects.filter((effect) => !effect.one_of || effect === oneOf(effects));
+  const own = effects.filter((effect) => !effect.one_of).concat(alternatives(effects)[0] || []);
   return own.length ? own.map(placed).join(' and ') : null;
 }

@@ -115,6 +115,7 @@ mod tests {
             effect: "suspended_mass".into(),
             at: "body".into(),
             form: None,
+            alternative: None,
             parameters: vec![
                 ("m_pwt".into(), 107.3, 1.1),
                 ("k_pwt_x".into(), 3e5, f64::NAN),

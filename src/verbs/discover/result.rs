@@ -54,8 +54,10 @@ struct Effect<'a> {
     name: &'a str,
     at: &'a str,
     form: Option<&'a str>,
-    /// True for an alternative of a class.
+    /// True for an effect of an alternative of a class.
     one_of: bool,
+    /// Number of that alternative, 0 for the most probable one.
+    alternative: Option<usize>,
     parameters: Ordered<f64>,
     stderr: Ordered<Option<f64>>,
     units: &'a BTreeMap<String, String>,
@@ -127,8 +129,7 @@ pub(crate) fn result(of: &Answer) -> Result<'_> {
             .findings
             .iter()
             .zip(&of.units)
-            .enumerate()
-            .map(|(place, own)| effect(of, place, own))
+            .map(|own| effect(of, own))
             .collect(),
         nuisances: nuisances::json(of),
         r#where: parts(before, of),
@@ -153,11 +154,7 @@ pub(crate) fn result(of: &Answer) -> Result<'_> {
     }
 }
 
-fn effect<'a>(
-    of: &'a Answer,
-    place: usize,
-    (finding, units): (&'a Finding, &'a BTreeMap<String, String>),
-) -> Effect<'a> {
+fn effect<'a>(of: &'a Answer, (finding, units): (&'a Finding, &'a BTreeMap<String, String>)) -> Effect<'a> {
     let alone = of.discovery.findings.len() == 1;
     let each = |value: fn(&(String, f64, f64)) -> f64| {
         let named = finding.parameters.iter().map(move |p| (p.0.clone(), value(p)));
@@ -167,7 +164,8 @@ fn effect<'a>(
         name: &finding.effect,
         at: &finding.at,
         form: finding.form.as_deref(),
-        one_of: place >= of.discovery.certain_and_alternatives().0.len(),
+        one_of: finding.alternative.is_some(),
+        alternative: finding.alternative,
         parameters: each(|p| p.1).into_iter().collect(),
         stderr: each(|p| p.2)
             .into_iter()

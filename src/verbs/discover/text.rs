@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use qcar_runtime::discover::answer::Verdict;
+use qcar_runtime::discover::answer::{Finding, Verdict};
 use qcar_runtime::discover::numbers::LARGE;
 use qcar_runtime::discover::observe::Kind;
 use qcar_runtime::discover::posterior::{Explanation, Misfit};
@@ -37,16 +37,17 @@ pub(super) fn text(of: &Answer) -> String {
     }
     out += &candidates(of);
     out += &remaining(of);
-    let certain = of.discovery.certain_and_alternatives().0.len();
-    for (place, (finding, units)) in of.discovery.findings.iter().zip(&of.units).enumerate() {
-        let among = if place < certain { certain } else { certain + 1 };
+    let findings = &of.discovery.findings;
+    for (place, (finding, units)) in findings.iter().zip(&of.units).enumerate() {
+        let is_beside = |other: &&Finding| other.alternative.is_none() || other.alternative == finding.alternative;
+        let among = findings.iter().filter(is_beside).count();
         out += &format!(
             "\n{}{}",
-            choice(of, place),
+            choice(findings, place),
             described(finding, among, of.evidence.judging(), units)
         );
         // Effects of one set have the same rivals.
-        let next = of.discovery.findings.get(place + 1);
+        let next = findings.get(place + 1);
         if next.is_none_or(|next| next.rivals != finding.rivals) {
             out += &rivals(finding);
         }

@@ -1,7 +1,5 @@
 //! The verdict in words.
 
-use std::cmp::Ordering;
-
 use qcar_runtime::campaign::Role;
 use qcar_runtime::discover::answer::{Finding, Probable, Verdict};
 use qcar_runtime::discover::numbers::{DOUBTFUL_BELOW, GREATER_PART, LARGE};
@@ -18,11 +16,11 @@ pub(crate) fn sentence(of: &Answer) -> String {
     match of.discovery.verdict {
         Verdict::None => nothing_found(of),
         Verdict::Found => format!("found {}{remains}", listed(found)),
-        Verdict::Class if found.is_empty() => format!("these data cannot distinguish {}{remains}", listed(class)),
+        Verdict::Class if found.is_empty() => format!("these data cannot distinguish {}{remains}", distinct(&class)),
         Verdict::Class => format!(
             "found {}, and in addition these data cannot distinguish {}{remains}",
             listed(found),
-            listed(class)
+            distinct(&class)
         ),
         Verdict::Unknown => unexplained(of),
     }
@@ -118,17 +116,72 @@ fn is_doubtful(of: &Answer) -> bool {
         .is_some_and(|probability| probability < DOUBTFUL_BELOW)
 }
 
-/// Word before the name of a finding: `either` or `or` for an alternative.
-pub(crate) fn choice(of: &Answer, place: usize) -> &'static str {
-    let found = of.discovery.certain_and_alternatives().0.len();
-    match place.cmp(&found) {
-        Ordering::Less => "",
-        Ordering::Equal => "either ",
-        Ordering::Greater => "or ",
+/// Words before the name of a finding: `either` or `or` for the first one of an alternative, `with` for the others.
+pub(crate) fn choice(findings: &[Finding], place: usize) -> &'static str {
+    let before = place.checked_sub(1).and_then(|before| findings[before].alternative);
+    match (before, findings[place].alternative) {
+        (_, None) => "",
+        (None, _) => "either ",
+        (before, own) if before == own => "with ",
+        _ => "or ",
     }
 }
 
-fn listed(findings: &[Finding]) -> String {
-    let names = findings.iter().map(|own| format!("{} at {}", own.effect, own.at));
-    names.collect::<Vec<_>>().join(" and ")
+/// The alternatives of a class.
+fn distinct(alternatives: &[&[Finding]]) -> String {
+    let together = alternatives
+        .iter()
+        .map(|own| own.iter().map(placed).collect::<Vec<_>>().join(" with "));
+    let is_plain = alternatives.iter().all(|own| own.len() == 1);
+    together
+        .collect::<Vec<_>>()
+        .join(if is_plain { " and " } else { ", and " })
+}
+
+/// The names of effects with their places.
+pub(super) fn listed(findings: &[Finding]) -> String {
+    findings.iter().map(placed).collect::<Vec<_>>().join(" and ")
+}
+
+fn placed(finding: &Finding) -> String {
+    format!("{} at {}", finding.effect, finding.at)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A friction and what is left beside it, in two forms each: four effects are not four alternatives.
+    #[test]
+    fn effects_of_one_alternative_are_told_together() {
+        let finding = |effect: &str, alternative| Finding {
+            effect: effect.into(),
+            at: "damper".into(),
+            form: None,
+            alternative,
+            parameters: Vec::new(),
+            evidence: 0.0,
+            explained: None,
+            rivals: Vec::new(),
+        };
+        let all = [
+            finding("bump_stop", None),
+            finding("coulomb_friction", Some(0)),
+            finding("free_play", Some(0)),
+            finding("elasto_slip_friction", Some(1)),
+            finding("sensor_delay", Some(1)),
+            finding("lugre_friction", Some(2)),
+        ];
+        let words: Vec<&str> = (0..all.len()).map(|place| choice(&all, place)).collect();
+        assert_eq!(words, ["", "either ", "with ", "or ", "with ", "or "]);
+        assert_eq!(
+            distinct(&[&all[1..3], &all[3..5]]),
+            "coulomb_friction at damper with free_play at damper, and elasto_slip_friction at damper with sensor_delay \
+             at damper"
+        );
+        assert_eq!(
+            distinct(&[&all[1..2], &all[3..4]]),
+            "coulomb_friction at damper and elasto_slip_friction at damper"
+        );
+    }
 }

@@ -104,6 +104,7 @@ mod tests {
             effect: "sensor_gain".into(),
             at: "wheel".into(),
             form: None,
+            alternative: None,
             parameters: vec![("gain".into(), gain, 0.01)],
             evidence: 30.0,
             explained: None,

@@ -83,7 +83,7 @@ pub fn text(of: &Study, summary: &Summary, folder: &Path) -> String {
             units::with_unit(&format!("{name} = {} ± {}", number(value, 4), number(error, 2)), si)
         };
         let values: Vec<String> = known.map(value).collect();
-        let (choice, values) = (choice(&of.answer, place), values.join(", "));
+        let (choice, values) = (choice(&of.answer.discovery.findings, place), values.join(", "));
         let _ = writeln!(out, "\n{choice}{} at {}: {values}", finding.effect, finding.at);
     }
     if let Some(file) = of.answer.model.as_ref().and_then(|model| model.file.as_ref()) {

@@ -65,7 +65,6 @@ impl Discovery {
             self.verdict = Verdict::Unknown;
             self.probability = None;
             self.findings.clear();
-            self.alternatives = 0;
             self.after = self.before.clone();
             self.nuisances[1] = self.nuisances[0].clone();
             self.learned = law;

@@ -119,6 +119,7 @@ pub fn summary(base: &Set, learned: Set, evidence: &Evidence) -> Learned {
         effect: own.effect.clone(),
         at: own.at.clone(),
         form: own.form.clone(),
+        alternative: None,
         parameters: own.unknowns.parameters(&learned.explanation),
         evidence: learned.explanation.refit.log_evidence - base.explanation.refit.log_evidence,
         explained,

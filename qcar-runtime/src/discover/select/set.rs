@@ -266,6 +266,7 @@ impl Set {
             effect: own.effect.clone(),
             at: own.at.clone(),
             form: own.form.clone(),
+            alternative: None,
             parameters: own.unknowns.parameters(&self.explanation),
             evidence: 0.0,
             explained: None,

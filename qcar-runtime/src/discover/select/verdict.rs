@@ -21,13 +21,13 @@ pub fn conclude(sets: &[Set], evidence: &Evidence) -> (Discovery, usize) {
     let members = if explains(credible[0]) { credible } else { vec![base] };
     let best = members[0];
     let finding = |set: &Set, own: &Placed| finding(set, own, before, evidence);
-    let (findings, alternatives) = findings(&members.iter().map(|&place| &sets[place]).collect::<Vec<_>>(), &finding);
+    let findings = findings(&members.iter().map(|&place| &sets[place]).collect::<Vec<_>>(), &finding);
     let of_none = total(&answers, |own| sets[own.set].names().is_empty());
     let is_incomplete = is_missing(&sets[best], evidence) || misses_a_sensor(&sets[best], evidence, Role::HeldOut);
-    let verdict = match (findings.is_empty(), alternatives) {
+    let verdict = match (findings.is_empty(), members.len()) {
         (true, _) if is_incomplete || of_none < evidence.numbers.error_probability => Verdict::Unknown,
         (true, _) => Verdict::None,
-        (false, 0) => Verdict::Found,
+        (false, 1) => Verdict::Found,
         (false, _) => Verdict::Class,
     };
     let holds = |own: &Answer| members.iter().any(|&member| is_part(&sets[member], &sets[own.set]));
@@ -49,7 +49,6 @@ pub fn conclude(sets: &[Set], evidence: &Evidence) -> (Discovery, usize) {
         candidates: candidates(sets, &answers, before, evidence),
         nuisances: [base, best].map(|place| nuisances(&sets[place])),
         findings,
-        alternatives,
         before: before.with_sensors_of(&sets[best], evidence).into_owned(),
         after: sets[best].explanation.clone(),
         detection_limits: Vec::new(),
@@ -64,6 +63,7 @@ fn finding(set: &Set, own: &Placed, base: &Set, evidence: &Evidence) -> Finding 
         effect: own.effect.clone(),
         at: own.at.clone(),
         form: own.form.clone(),
+        alternative: None,
         parameters: own.unknowns.parameters(&set.explanation),
         evidence: set.explanation.refit.log_evidence - base.explanation.refit.log_evidence,
         explained: stated_share(base, set, evidence),
@@ -84,26 +84,18 @@ fn total(answers: &[Answer], wanted: impl Fn(&Answer) -> bool) -> f64 {
     wanted.map(|own| own.probability).sum()
 }
 
-/// Findings of the members, those common to all first, and the number of alternative findings at the end.
-fn findings(members: &[&Set], finding: &dyn Fn(&Set, &Placed) -> Finding) -> (Vec<Finding>, usize) {
-    let is_common = |own: &Placed| members.iter().all(|set| set.names().contains(&own.name()));
-    let (common, others): (Vec<&Placed>, Vec<&Placed>) = members[0].named().partition(|own| is_common(own));
-    let first = common.iter().chain(&others).map(|own| finding(members[0], own));
-    let mut findings: Vec<Finding> = first.collect();
-    for set in &members[1..] {
-        for own in set.named() {
-            let is_known = |known: &Finding| (known.effect.as_str(), known.at.as_str()) == own.name();
-            if !findings.iter().any(is_known) {
-                findings.push(finding(set, own));
-            }
-        }
-    }
-    let alternatives = if members.len() > 1 {
-        findings.len() - common.len()
-    } else {
-        0
-    };
-    (findings, alternatives)
+/// Findings of the members: those common to all, as in the first member, and then the others of each member.
+fn findings(members: &[&Set], finding: &dyn Fn(&Set, &Placed) -> Finding) -> Vec<Finding> {
+    let is_common = |own: &&Placed| members.iter().all(|set| set.names().contains(&own.name()));
+    let common = members[0].named().filter(is_common).map(|own| finding(members[0], own));
+    let others = members.iter().enumerate().flat_map(|(place, set)| {
+        let own = set.named().filter(|own| !is_common(own));
+        own.map(move |own| Finding {
+            alternative: Some(place),
+            ..finding(set, own)
+        })
+    });
+    common.chain(others).collect()
 }
 
 /// Ratio of `part` to `all`, at least 0; 0 if `all` is 0.
