@@ -22,6 +22,8 @@ mod base;
 mod extend;
 // Posterior probabilities of the sets.
 mod probability;
+// Effects that make up for the form of another at their link.
+mod form;
 // Checks on held-out runs.
 mod held_out;
 // Names in the answer.

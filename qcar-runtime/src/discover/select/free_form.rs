@@ -6,13 +6,13 @@
 
 use super::extend::SearchStart;
 use super::learn::most_probable_law;
-use super::set::{Set, best_base, by_log_posterior, explained_share, is_part};
+use super::set::{Set, best_base, by_log_posterior, explained_share};
 use super::{Progress, Update};
 use crate::discover::candidate::Candidate;
 use crate::discover::observe::Evidence;
 
-/// Leaves out the sets of several effects that only make up for the form of the best of them: those with this effect, if
-/// it explains most of the excess residual alone, and is more probable with a law at its place than the set at `best`.
+/// Leaves out the sets of several effects if they only make up for the form of one: the most probable of them, at `best`,
+/// is less probable than one of its effects, which explains most of the excess residual alone, with a law at its place.
 pub fn without_effects_of_form(sets: Vec<Set>, best: usize, evidence: &Evidence, progress: Progress<'_>) -> Vec<Set> {
     let Some(first) = first_effect(&sets, best, evidence) else {
         return sets;
@@ -21,7 +21,7 @@ pub fn without_effects_of_form(sets: Vec<Set>, best: usize, evidence: &Evidence,
     if with_law.is_none_or(|own| own.log_posterior() <= sets[best].log_posterior()) {
         return sets;
     }
-    let is_left = |set: &&Set| set.names().len() < 2 || !is_part(first, set);
+    let is_left = |set: &&Set| set.names().len() < 2;
     sets.iter().filter(is_left).cloned().collect()
 }
 

@@ -4,6 +4,7 @@ use std::collections::HashSet;
 
 use rayon::prelude::*;
 
+use super::form::explains_in_one_form;
 use super::set::{Set, best_base, excess, explained_share, held_out_judge, is_part, most_probable_first};
 use crate::campaign::Role;
 use crate::discover::observe::Evidence;
@@ -22,7 +23,8 @@ use crate::discover::posterior::Explanation;
 /// same effects can explain.
 ///
 /// Fewer effects that are no part of the set replace it if they explain nearly all of the residual and predict the
-/// held-out runs at least as well: several effects can imitate a law whose form is a little different.
+/// held-out runs at least as well: several effects can imitate a law whose form is a little different. One effect also
+/// replaces several at its link that only make up for its form ([`explains_in_one_form`]).
 pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
     let is_judged = evidence.judging() == Role::HeldOut;
     let unexplained = evidence.numbers.error_probability * excess(&sets[best_base(sets)].explanation, evidence);
@@ -48,10 +50,12 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
             let explains = is_judged && excess(&other.explanation, evidence) <= unexplained;
             explains && !other.names().is_empty() && !predicts_better(other)
         };
-        let replaces = |&other: &usize| match is_part(&sets[other], set) {
-            true => is_part_enough(&sets[other]),
-            false => is_simpler(&sets[other]),
+        let is_enough = |other: &Set| match is_part(other, set) {
+            true => is_part_enough(other),
+            false => is_simpler(other),
         };
+        let replaces =
+            |&other: &usize| is_enough(&sets[other]) || explains_in_one_form(&sets[other], set, sets, evidence);
         let is_less = |other: &usize| sets[*other].names().len() < set.names().len();
         let is_answer = |other: &usize| is_less(other) && !sets[*other].has_magnitude_at_bound();
         let mut parts = most_probable_first(sets, (0..sets.len()).filter(is_answer));
