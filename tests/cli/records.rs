@@ -438,7 +438,7 @@ fn with_stop(begin: [f64; 2]) -> Vec<f64> {
     let acceleration = |z: f64, v: f64| (-800.0 * z - v - 3000.0 * (z + 0.005).min(0.0)) / 2.0;
     let [mut z, mut v] = begin;
     let mut samples = Vec::new();
-    for step in 0..800 * FINER {
+    for step in 0..400 * FINER {
         if step % FINER == 0 {
             samples.push(acceleration(z, v));
         }
