@@ -174,17 +174,27 @@ fn a_column_of_gas_is_named() {
 #[test]
 fn a_stop_of_foam_is_named() {
     let stop = |s: f64| 4e4 * (s + 0.012).min(0.0) * (1.0 + ((s + 0.012).min(0.0) / 6e-3).powi(2));
-    let folder = on_a_crank(|s, v| 20e3 * s + 3000.0 * v + stop(s), (1.0, 3.0), 2);
+    let folder = on_a_crank_at(100, |s, v| 20e3 * s + 3000.0 * v + stop(s), (1.0, 3.0), 2);
     let truth = [("gap", 0.012, 0.05), ("k_stop", 4e4, 0.1), ("d_stiff", 6e-3, 0.1)];
     is_found(&discover(folder.path(), None), "bump_stop", &truth);
 }
 
 /// A campaign of a strut on a crank, whose force is a law of its stretch and rate: whole turns in these seconds. The
 /// held-out run is `faster`, and the load cell has `noise` (N).
-fn on_a_crank(law: impl Fn(f64, f64) -> f64, (faster, noise): (f64, f64), seconds: u32) -> tempfile::TempDir {
+fn on_a_crank(law: impl Fn(f64, f64) -> f64, more: (f64, f64), seconds: u32) -> tempfile::TempDir {
+    on_a_crank_at(200, law, more, seconds)
+}
+
+/// The same with this sample rate, Hz.
+fn on_a_crank_at(
+    hertz: u32,
+    law: impl Fn(f64, f64) -> f64,
+    (faster, noise): (f64, f64),
+    seconds: u32,
+) -> tempfile::TempDir {
     let rates = [0.5, 1.5, 2.5, 2.0 * faster];
     let runs = [0.02, 0.02, 0.018, 0.02].into_iter().zip(rates).map(|(size, f)| {
-        let samples = || (0..200 * seconds).map(|k| f64::from(k) / 200.0);
+        let samples = || (0..hertz * seconds).map(|k| f64::from(k) / f64::from(hertz));
         let stretch = |t: f64| size * ((TAU * f * t).sin() + 0.1 * ((2.0 * TAU * f * t).cos() - 1.0));
         let rate = |t: f64| size * TAU * f * ((TAU * f * t).cos() - 0.2 * (2.0 * TAU * f * t).sin());
         vec![
@@ -197,7 +207,7 @@ fn on_a_crank(law: impl Fn(f64, f64) -> f64, (faster, noise): (f64, f64), second
         ]
     });
     let folder = tempfile::tempdir().expect("a folder");
-    write(folder.path(), &crank(), (200.0, false), runs.collect());
+    write(folder.path(), &crank(), (hertz.into(), false), runs.collect());
     folder
 }
 
@@ -339,7 +349,7 @@ fn drum(law: impl Fn(f64) -> f64, zero: f64) -> tempfile::TempDir {
     };
     let runs = [(12.0, 0), (18.0, 1), (15.0, 2)].map(|run| {
         let rates = |_: f64, [x, v]: [f64; 2], force: f64| [v, (force - 20.0 * v - law(x)) / 95.0];
-        let motion = integrate(rates, |t, _| force(run, t), (1e-3, 20, 1500));
+        let motion = integrate(rates, |t, _| force(run, t), (1e-3, 20, 750));
         vec![
             ("force", 0.1, motion.iter().map(|(_, force)| force + zero).collect()),
             ("body", 1e-3, motion.iter().map(|(x, _)| x[0]).collect()),

@@ -8,7 +8,7 @@ use serde_json::Value;
 use crate::common::{qcar, refused, succeeds};
 
 /// Samples of every record, and their rate in Hz.
-const SAMPLES: usize = 2000;
+const SAMPLES: usize = 1000;
 pub const RATE: f64 = 200.0;
 
 /// A mass of 2 kg on a spring of 800 N/m and a damper of 3 N s/m under a force, by steps far shorter than a sample.
@@ -438,7 +438,7 @@ fn with_stop(begin: [f64; 2]) -> Vec<f64> {
     let acceleration = |z: f64, v: f64| (-800.0 * z - v - 3000.0 * (z + 0.005).min(0.0)) / 2.0;
     let [mut z, mut v] = begin;
     let mut samples = Vec::new();
-    for step in 0..800 * FINER {
+    for step in 0..400 * FINER {
         if step % FINER == 0 {
             samples.push(acceleration(z, v));
         }
@@ -732,7 +732,7 @@ fn the_ends_of_a_band_limited_record_are_not_compared() {
     let parameters = all_known();
     let tone = |t: f64| (std::f64::consts::TAU * 3.0 * t).cos() + (std::f64::consts::TAU * 17.0 * t).cos();
     let force: Vec<f64> = (0..SAMPLES).map(|k| tone(k as f64 / RATE)).collect();
-    let z = mass_for(3 * SAMPLES, [0.0, 0.0], tone)[2 * SAMPLES..].to_vec();
+    let z = mass_for(5 * SAMPLES, [0.0, 0.0], tone)[4 * SAMPLES..].to_vec();
     let columns = vec![("push", force), ("z", z)];
     campaign(
         folder.path(),
@@ -758,8 +758,8 @@ fn a_band_and_a_steady_state_are_compared_as_the_campaign_says() {
     let tone = |t: f64| (std::f64::consts::TAU * 2.0 * t).sin() + (std::f64::consts::TAU * 4.0 * t).cos();
     let held = |t: f64| tone((t * RATE).floor() / RATE);
     let force: Vec<f64> = (0..SAMPLES).map(|k| tone(k as f64 / RATE)).collect();
-    // Begun ten seconds earlier, as long as twenty of its time constants.
-    let z = |count: usize| -> Vec<f64> { mass_for(3 * SAMPLES, [0.0, 0.0], held)[2 * SAMPLES..][..count].to_vec() };
+    // Begun twenty seconds earlier, as long as fifteen of its time constants.
+    let z = |count: usize| -> Vec<f64> { mass_for(5 * SAMPLES, [0.0, 0.0], held)[4 * SAMPLES..][..count].to_vec() };
     let nrms = |keys: &str, z: Vec<f64>| {
         let keys = format!("band_limited = false\n{keys}");
         let columns = vec![("push", force.clone()), ("z", z)];
