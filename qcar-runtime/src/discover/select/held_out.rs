@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use rayon::prelude::*;
 
 use super::form::explains_in_one_form;
-use super::set::{Set, best_base, excess, explained_share, held_out_judge, is_part, most_probable_first};
+use super::set::{Set, above_noise, best_base, excess, explained_share, held_out_judge, is_part, most_probable_first};
 use crate::campaign::Role;
 use crate::discover::observe::Evidence;
 use crate::discover::posterior::Explanation;
@@ -15,6 +15,9 @@ use crate::discover::posterior::Explanation;
 /// its excess residual, if one of these has a parameter at its bound, or if only the cleat runs along one axis prefer
 /// the set. It also does if it explains nearly all of the residual and the fitted runs determine no parameter of an
 /// additional effect. The last three checks need no held-out runs. A set with a magnitude at its bound replaces no other.
+///
+/// If the base model leaves only noise in the held-out runs, the fitted runs must show its effects all the more clearly:
+/// they explain most of the excess residual there.
 ///
 /// The held-out runs judge only the additional effects that they excite: beside a friction that cleat runs show, a stop
 /// that K&C curves alone reach is withdrawn only if the prediction becomes certainly worse with it.
@@ -35,7 +38,10 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
             // If the part leaves no more than noise, there is nothing to explain.
             let is_enough = || excess(&part.with_sensors_of(set, evidence), evidence) <= 0.0;
             let explains_little = || is_enough() || explained_share(part, set, evidence) < evidence.numbers.explained();
-            let changes_little = || !part.names().is_empty() && explains_little();
+            let changes_little = || match part.names().is_empty() {
+                true => is_enough() && explains_little_of_fitted(part, set, evidence),
+                false => explains_little(),
+            };
             let fails = || match held_out_judge(part, evidence) {
                 true => changes_little() || !predicts_better(part),
                 false => predicts_certainly_worse(set, part, evidence),
@@ -84,6 +90,13 @@ pub fn predicts_better(set: &Set, other: &Set, evidence: &Evidence) -> bool {
         Role::Fit => !predicts_certainly_worse(set, other, evidence),
     };
     none_held_out || is_better() || explained_share(other, set, evidence) >= evidence.numbers.certain()
+}
+
+/// True if a set explains less of the excess residual of the fitted runs than a further effect must.
+fn explains_little_of_fitted(part: &Set, set: &Set, evidence: &Evidence) -> bool {
+    let part = part.with_sensors_of(set, evidence);
+    let [before, after] = [&*part, &set.explanation].map(|own| above_noise(own.misfit.fit));
+    after > evidence.numbers.left * before
 }
 
 /// True if a set predicts the held-out runs worse than another set with the same sensor errors, by the odds of a certain

@@ -3,7 +3,7 @@
 use super::first_law::FirstLaw;
 use super::learn;
 use super::probability::probabilities;
-use super::set::{Set, best_base, excess, explained_share, leaves_more_than_noise};
+use super::set::{Set, best_base, excess, explained_share, leaves_more_than_noise, stated_share};
 use crate::discover::answer::{Discovery, Learned, Progress, Verdict};
 use crate::discover::numbers::{DOUBTFUL_BELOW, GREATER_PART};
 use crate::discover::observe::Evidence;
@@ -22,7 +22,8 @@ pub fn compare_with_law(
     if is_unexplained(discovery, base, evidence) {
         let first = law.for_base(sets, evidence, progress);
         let learned = learn::learn(base, first, &sets[0], evidence, progress);
-        let explains = |law: &Set| explained_share(base, law, evidence) >= evidence.numbers.explained();
+        let explains =
+            |law: &Set| stated_share(base, law, evidence).is_some_and(|share| share >= evidence.numbers.explained());
         let is_explained = learned.as_ref().is_some_and(explains);
         let learned = learned.map(|learned| learn::summary(base, learned, evidence));
         discovery.take(learned, is_explained);

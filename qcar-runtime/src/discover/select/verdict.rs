@@ -3,7 +3,7 @@
 use super::answers::{Answer, answers, credible};
 use super::assembly::Placed;
 use super::set::{
-    Set, best_base, by_log_posterior, explained_share, is_missing, is_part, misses_a_sensor, stated_share,
+    Set, best_base, by_log_posterior, excess, explained_share, is_missing, is_part, misses_a_sensor, stated_share,
 };
 use crate::campaign::Role;
 use crate::discover::answer::{Discovery, Finding, Probable, Rival, Verdict};
@@ -18,25 +18,30 @@ pub fn conclude(sets: &[Set], evidence: &Evidence) -> (Discovery, usize) {
     let credible = credible(sets, &answers, evidence);
     // Effects that explain less than half of the excess residual are no answer, even if they are the most probable.
     let explains = |set: usize| explained_share(before, &sets[set], evidence) >= GREATER_PART;
+    let is_base_credible = credible[0] == base;
     let members = if explains(credible[0]) { credible } else { vec![base] };
     let best = members[0];
     let finding = |set: &Set, own: &Placed| finding(set, own, before, evidence);
     let findings = findings(&members.iter().map(|&place| &sets[place]).collect::<Vec<_>>(), &finding);
     let of_none = total(&answers, |own| sets[own.set].names().is_empty());
     let is_incomplete = is_missing(&sets[best], evidence) || misses_a_sensor(&sets[best], evidence, Role::HeldOut);
+    // Effects that the held-out runs refute are no sign of a missing one if the base model leaves only noise there.
+    let is_judged = evidence.judging() == Role::HeldOut;
+    let leaves_noise = is_base_credible && is_judged && excess(&before.explanation, evidence) <= 0.0;
+    let is_improbable = of_none < evidence.numbers.error_probability && !leaves_noise;
     let verdict = match (findings.is_empty(), members.len()) {
-        (true, _) if is_incomplete || of_none < evidence.numbers.error_probability => Verdict::Unknown,
+        (true, _) if is_incomplete || is_improbable => Verdict::Unknown,
         (true, _) => Verdict::None,
         (false, 1) => Verdict::Found,
         (false, _) => Verdict::Class,
     };
     let holds = |own: &Answer| members.iter().any(|&member| is_part(&sets[member], &sets[own.set]));
+    let possible = |wanted: &dyn Fn(&Answer) -> bool| total(&answers, |own| !own.dismissed && wanted(own));
     let probability = match verdict {
-        Verdict::None => Some(of_none),
+        Verdict::None if !leaves_noise => Some(of_none),
         // Probability on the condition that one of the answers that are not dismissed is true.
-        Verdict::Found | Verdict::Class => {
-            Some(total(&answers, |own| !own.dismissed && holds(own)) / total(&answers, |own| !own.dismissed))
-        }
+        Verdict::None => Some(of_none / possible(&|_| true)),
+        Verdict::Found | Verdict::Class => Some(possible(&holds) / possible(&|_| true)),
         Verdict::Unknown => None,
     };
     let nuisances = |set: &Set| {
