@@ -221,14 +221,17 @@ fn is_clock(name: &str, parameters: &[NewParameter]) -> bool {
     own.is_some_and(|own| own.role == ParameterRole::Clock)
 }
 
-/// `it changes from 1 at the start of a run to 0.9 after 10, 0.7 after 30 s`, and no further than the `longest` run
-/// (s).
+/// `it changes from 1 at the start of a run to 0.9 after 10, about 0.8 after 20 s`, where the `longest` run (s) ends. The
+/// value there is interpolated linearly between two points of the law.
 fn of_time(points: &[(f64, f64)], unit: String, longest: f64) -> String {
     let end = if unit == "s" { longest } else { 1.0 };
-    let later = side(points, 1.0).into_iter().filter(|(time, _)| *time <= end);
-    let values: Vec<String> = later
-        .map(|(time, y)| format!("{} after {}", number(y, 3), number(time, 3)))
-        .collect();
+    let (within, beyond): (Vec<_>, Vec<_>) = side(points, 1.0).into_iter().partition(|(time, _)| *time <= end);
+    let after = |(time, y): (f64, f64)| format!("{} after {}", number(y, 3), number(time, 3));
+    let (from, y) = within.last().copied().unwrap_or((0.0, 1.0));
+    let at_end = beyond.first().filter(|_| from < end);
+    let at_end = at_end.map(|(time, later)| (end, y + (later - y) * (end - from) / (time - from)));
+    let mut values: Vec<String> = within.into_iter().map(after).collect();
+    values.extend(at_end.map(|at_end| format!("about {}", after(at_end))));
     if values.is_empty() {
         return "how it changes with time is not determined".into();
     }
@@ -322,7 +325,14 @@ mod tests {
             text(120.0),
             "it changes from 1 at the start of a run to 0.9 after 10, 0.75 after 30 s"
         );
-        assert_eq!(text(20.0), "it changes from 1 at the start of a run to 0.9 after 10 s");
+        assert_eq!(
+            text(20.0),
+            "it changes from 1 at the start of a run to 0.9 after 10, about 0.825 after 20 s"
+        );
+        assert_eq!(
+            text(5.0),
+            "it changes from 1 at the start of a run to about 0.95 after 5 s"
+        );
         assert_eq!(
             of_time(&points[..1], "1".into(), 20.0),
             "how it changes with time is not determined"
