@@ -16,8 +16,8 @@ use crate::discover::posterior::Explanation;
 /// the set. It also does if it explains nearly all of the residual and the fitted runs determine no parameter of an
 /// additional effect. The last three checks need no held-out runs. A set with a magnitude at its bound replaces no other.
 ///
-/// If the base model leaves only noise in the held-out runs, the fitted runs must show its effects all the more clearly:
-/// they explain most of the excess residual there.
+/// If the base model leaves only noise in the held-out runs, its effects must either predict these better or explain most
+/// of the excess residual of the fitted runs.
 ///
 /// The held-out runs judge only the additional effects that they excite: beside a friction that cleat runs show, a stop
 /// that K&C curves alone reach is withdrawn only if the prediction becomes certainly worse with it.
@@ -39,7 +39,7 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
             let is_enough = || excess(&part.with_sensors_of(set, evidence), evidence) <= 0.0;
             let explains_little = || is_enough() || explained_share(part, set, evidence) < evidence.numbers.explained();
             let changes_little = || match part.names().is_empty() {
-                true => is_enough() && explains_little_of_fitted(part, set, evidence),
+                true => is_enough() && is_shown_nowhere(part, set, evidence),
                 false => explains_little(),
             };
             let fails = || match held_out_judge(part, evidence) {
@@ -92,11 +92,12 @@ pub fn predicts_better(set: &Set, other: &Set, evidence: &Evidence) -> bool {
     none_held_out || is_better() || explained_share(other, set, evidence) >= evidence.numbers.certain()
 }
 
-/// True if a set explains less of the excess residual of the fitted runs than a further effect must.
-fn explains_little_of_fitted(part: &Set, set: &Set, evidence: &Evidence) -> bool {
-    let part = part.with_sensors_of(set, evidence);
-    let [before, after] = [&*part, &set.explanation].map(|own| above_noise(own.misfit.fit));
-    after > evidence.numbers.left * before
+/// True if a set predicts the held-out runs no better than a part of it, and explains less of the excess residual of the
+/// fitted runs than a further effect must.
+fn is_shown_nowhere(part: &Set, set: &Set, evidence: &Evidence) -> bool {
+    let of_part = part.with_sensors_of(set, evidence);
+    let [before, after] = [&*of_part, &set.explanation].map(|own| above_noise(own.misfit.fit));
+    after > evidence.numbers.left * before && gain_in_score(set, part, evidence) <= 0.0
 }
 
 /// True if a set predicts the held-out runs worse than another set with the same sensor errors, by the odds of a certain
