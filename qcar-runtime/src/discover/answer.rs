@@ -75,7 +75,8 @@ pub struct Probable {
 pub struct Discovery {
     /// The verdict.
     pub verdict: Verdict,
-    /// Probability of the verdict; `None` if it is `Unknown`.
+    /// Probability of the verdict; `None` if it is `Unknown`, or if it is `None` because only the fitted runs prefer an
+    /// effect.
     pub probability: Option<f64>,
     /// Most probable effects, most probable first.
     pub candidates: Vec<Probable>,

@@ -103,16 +103,16 @@ fn last(of: &Answer) -> (&'static str, &Explanation) {
 }
 
 /// The most probable effects as a table; empty without any. An effect of an answer with several may explain little
-/// alone, so the columns say that they are of the effect alone. If a law was learned or the answer is `unknown`, the title
-/// says that the probabilities only compare the effects.
+/// alone, so the columns say that they are of the effect alone. If a law was learned or the answer has no probability, the
+/// title says that the probabilities only compare the effects.
 fn candidates(of: &Answer) -> String {
     let all = &of.discovery.candidates;
     if all.is_empty() {
         return String::new();
     }
-    let title = match (&of.discovery.learned, of.discovery.verdict) {
+    let title = match (&of.discovery.learned, of.discovery.probability) {
         (Some(_), _) => "effects of the catalogue, compared with each other and not with the law\n",
-        (None, Verdict::Unknown) => "effects of the catalogue, compared with each other; none of them is an answer\n",
+        (None, None) => "effects of the catalogue, compared with each other; none of them is an answer\n",
         (None, _) => "",
     };
     let mut table = Table::new([

@@ -102,6 +102,8 @@ fn nothing_found(of: &Answer) -> String {
             );
         }
         format!("no effect found, but the {runs} runs have residuals of {left} standard deviations")
+    } else if of.discovery.probability.is_none() {
+        "no effect is certain: noise explains the residuals of the held-out runs".into()
     } else if is_doubtful(of) {
         "no effect is certain: small residuals above noise remain".into()
     } else {

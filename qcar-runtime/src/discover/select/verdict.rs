@@ -7,7 +7,7 @@ use super::set::{
 };
 use crate::campaign::Role;
 use crate::discover::answer::{Discovery, Finding, Probable, Rival, Verdict};
-use crate::discover::numbers::GREATER_PART;
+use crate::discover::numbers::{DOUBTFUL_BELOW, GREATER_PART};
 use crate::discover::observe::Evidence;
 
 /// The answer, and the position of the set that it describes. For a class, this is the most probable member.
@@ -16,18 +16,19 @@ pub fn conclude(sets: &[Set], evidence: &Evidence) -> (Discovery, usize) {
     let base = best_base(sets);
     let before = &sets[base];
     let credible = credible(sets, &answers, evidence);
-    // Effects that explain less than half of the excess residual are no answer, even if they are the most probable.
+    // Effects that explain less than half of the excess residual are no answer, even if they are the most probable. In a class,
+    // they show that the model is wrong in another way.
     let explains = |set: usize| explained_share(before, &sets[set], evidence) >= GREATER_PART;
-    let is_base_credible = credible[0] == base;
-    let members = if explains(credible[0]) { credible } else { vec![base] };
+    let is_answer = credible.iter().all(|&member| explains(member));
+    let members = if is_answer { credible } else { vec![base] };
     let best = members[0];
     let finding = |set: &Set, own: &Placed| finding(set, own, before, evidence);
     let findings = findings(&members.iter().map(|&place| &sets[place]).collect::<Vec<_>>(), &finding);
     let of_none = total(&answers, |own| sets[own.set].names().is_empty());
     let is_incomplete = is_missing(&sets[best], evidence) || misses_a_sensor(&sets[best], evidence, Role::HeldOut);
-    // Effects that the held-out runs refute are no sign of a missing one if the base model leaves only noise there.
+    // Effects that the held-out runs do not show are no sign of a missing one if the base model leaves only noise there.
     let is_judged = evidence.judging() == Role::HeldOut;
-    let leaves_noise = is_base_credible && is_judged && excess(&before.explanation, evidence) <= 0.0;
+    let leaves_noise = is_judged && excess(&before.explanation, evidence) <= 0.0;
     let is_improbable = of_none < evidence.numbers.error_probability && !leaves_noise;
     let verdict = match (findings.is_empty(), members.len()) {
         (true, _) if is_incomplete || is_improbable => Verdict::Unknown,
@@ -40,7 +41,7 @@ pub fn conclude(sets: &[Set], evidence: &Evidence) -> (Discovery, usize) {
     let probability = match verdict {
         Verdict::None if !leaves_noise => Some(of_none),
         // Probability on the condition that one of the answers that are not dismissed is true.
-        Verdict::None => Some(of_none / possible(&|_| true)),
+        Verdict::None => Some(of_none / possible(&|_| true)).filter(|own| *own >= DOUBTFUL_BELOW),
         Verdict::Found | Verdict::Class => Some(possible(&holds) / possible(&|_| true)),
         Verdict::Unknown => None,
     };
