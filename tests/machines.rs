@@ -1,5 +1,6 @@
 //! Records of machines, by a simulator of their own: their laws are not those of the catalogue to the letter.
 
+use std::cell::Cell;
 use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::fs;
@@ -177,6 +178,40 @@ fn a_stop_of_foam_is_named() {
     let folder = on_a_crank_at(100, |s, v| 20e3 * s + 3000.0 * v + stop(s), (1.0, 3.0), 2);
     let truth = [("gap", 0.012, 0.05), ("k_stop", 4e4, 0.1), ("d_stiff", 6e-3, 0.1)];
     is_found(&discover(folder.path(), None), "bump_stop", &truth);
+}
+
+/// A Bouc-Wen hysteresis of 420 N whose two terms are equal, as in textbooks: `loop_shape` is at the end of its range. A
+/// stack of sliders explains it as well.
+#[test]
+#[ignore = "a whole search; .ci/run runs it"]
+fn a_hysteresis_of_equal_terms_is_named() {
+    let (last, loop_force) = (Cell::new(0.0), Cell::new(0.0));
+    let hysteresis = |s: f64| {
+        // Each record begins at rest.
+        let (from, mut force) = if s == 0.0 {
+            (0.0, 0.0)
+        } else {
+            (last.get(), loop_force.get())
+        };
+        let step = (s - from) / 50.0;
+        for _ in 0..50 {
+            let part: f64 = force / 420.0;
+            force += 3e5 * (step - 0.5 * step.abs() * part * part.abs() - 0.5 * step * part * part);
+        }
+        last.set(s);
+        loop_force.set(force);
+        force
+    };
+    let folder = on_a_crank(|s, v| hysteresis(s) + 1500.0 * s + 2500.0 * v, (1.0, 3.0), 2);
+    let answer = discover(folder.path(), None);
+    assert_eq!(answer["verdict"], "class", "{answer}");
+    let effects = answer["effects"].as_array().expect("effects");
+    let own = effects.iter().find(|own| own["name"] == "bouc_wen_hysteresis");
+    let force = own.and_then(|own| own["parameters"]["f_hysteresis"].as_f64());
+    assert!(
+        force.is_some_and(|force| (force / 420.0 - 1.0).abs() < 0.03),
+        "{answer}"
+    );
 }
 
 /// A campaign of a strut on a crank, whose force is a law of its stretch and rate: whole turns in these seconds. The

@@ -40,7 +40,11 @@ impl Unknowns {
                 vec![Unknown::Coefficient(parameter.effect_name.clone(), place, *form)]
             }
         };
-        let is_magnitude = |own: &&Added| !own.known && own.role != ParameterRole::Shape;
+        let is_magnitude = |own: &&Added| match own.role {
+            ParameterRole::Strength { .. } => !own.known,
+            ParameterRole::Shape => false,
+            _ => !own.known && own.scales_force,
+        };
         let magnitudes = match &candidate.change {
             Change::Model { parameters, .. } => {
                 parameters.iter().filter(is_magnitude).map(|p| p.name.clone()).collect()
@@ -78,7 +82,9 @@ impl Unknowns {
         Some(own.map(|free| (free, change(free))).collect())
     }
 
-    /// True if a magnitude is at its bound, a sign that the effect imitates another. Shape parameters are not counted.
+    /// True if a magnitude is at its bound, a sign that the effect imitates another: its strength, or another mass,
+    /// stiffness, damping or force. Shape parameters and ratios are not counted: the end of a range of these may be the
+    /// law of a textbook, such as equal terms of Bouc and Wen's.
     pub fn has_magnitude_at_bound(&self, explanation: &Explanation) -> bool {
         self.magnitudes.iter().any(|name| is_at_bound(explanation, name))
     }
