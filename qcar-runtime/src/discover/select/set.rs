@@ -276,9 +276,15 @@ impl Set {
     }
 
     /// True if a named effect has a magnitude at its bound.
-    pub fn has_magnitude_at_bound(&self) -> bool {
-        self.named()
-            .any(|own| own.unknowns.has_magnitude_at_bound(&self.explanation))
+    pub fn has_magnitude_at_bound(&self, evidence: &Evidence) -> bool {
+        self.named().any(|own| self.is_magnitude_at_bound(own, evidence))
+    }
+
+    /// True if a magnitude of an effect is at its bound. A ratio counts too if this set leaves more than noise.
+    fn is_magnitude_at_bound(&self, own: &Placed, evidence: &Evidence) -> bool {
+        let unknowns = &own.unknowns;
+        unknowns.has_magnitude_at_bound(&self.explanation)
+            || unknowns.has_ratio_at_bound(&self.explanation) && leaves_more_than_noise(self, evidence)
     }
 
     /// True if an effect that `part` lacks has a magnitude at its bound: it then imitates another effect.
@@ -292,7 +298,7 @@ impl Set {
         let explains_little = || explained_share(part, self, evidence) < evidence.numbers.explained();
         let has_other_causes = !part.names().is_empty() || replaces_parameter() || explains_little();
         let is_at_bound = |own: &Placed| {
-            own.unknowns.has_magnitude_at_bound(&self.explanation)
+            self.is_magnitude_at_bound(own, evidence)
                 || has_other_causes && own.unknowns.has_parameter_at_bound(&self.explanation)
         };
         let is_new = |own: &&Placed| !part.names().contains(&own.name());

@@ -8,8 +8,10 @@ use crate::discover::posterior::Explanation;
 #[derive(Clone)]
 pub struct Unknowns {
     all: Vec<Unknown>,
-    /// Names of its free model parameters other than shape parameters: they determine the size of the effect.
+    /// Names of its free strengths, masses, stiffnesses, dampings and forces: they determine the size of the effect.
     magnitudes: Vec<String>,
+    /// Names of its other free parameters that are no shapes.
+    ratios: Vec<String>,
     /// The model parameter that is its strength, and the finite value at which the effect vanishes.
     strength: Option<(String, f64)>,
 }
@@ -40,16 +42,15 @@ impl Unknowns {
                 vec![Unknown::Coefficient(parameter.effect_name.clone(), place, *form)]
             }
         };
-        let is_magnitude = |own: &&Added| match own.role {
-            ParameterRole::Strength { .. } => !own.known,
-            ParameterRole::Shape => false,
-            _ => !own.known && own.scales_force,
-        };
-        let magnitudes = match &candidate.change {
+        let is_magnitude = |own: &&Added| !own.known && own.role != ParameterRole::Shape;
+        let is_ratio = |own: &Added| own.role == ParameterRole::Other && !own.scales_force;
+        let (ratios, magnitudes) = match &candidate.change {
             Change::Model { parameters, .. } => {
-                parameters.iter().filter(is_magnitude).map(|p| p.name.clone()).collect()
+                let (ratios, others): (Vec<&Added>, _) =
+                    parameters.iter().filter(is_magnitude).partition(|own| is_ratio(own));
+                (names(ratios), names(others))
             }
-            Change::Sensor { .. } => Vec::new(),
+            Change::Sensor { .. } => Default::default(),
         };
         let strength = |own: &Added| match own.role {
             ParameterRole::Strength { vanishes_at } if vanishes_at.is_finite() => Some((own.name.clone(), vanishes_at)),
@@ -62,6 +63,7 @@ impl Unknowns {
         Self {
             all: unknowns,
             magnitudes,
+            ratios,
             strength,
         }
     }
@@ -83,10 +85,15 @@ impl Unknowns {
     }
 
     /// True if a magnitude is at its bound, a sign that the effect imitates another: its strength, or another mass,
-    /// stiffness, damping or force. Shape parameters and ratios are not counted: the end of a range of these may be the
-    /// law of a textbook, such as equal terms of Bouc and Wen's.
+    /// stiffness, damping or force. Shape parameters are not counted.
     pub fn has_magnitude_at_bound(&self, explanation: &Explanation) -> bool {
         self.magnitudes.iter().any(|name| is_at_bound(explanation, name))
+    }
+
+    /// True if another parameter than these and its shape is at its bound. That may be the law of a textbook, such as equal
+    /// terms of Bouc and Wen's.
+    pub fn has_ratio_at_bound(&self, explanation: &Explanation) -> bool {
+        self.ratios.iter().any(|name| is_at_bound(explanation, name))
     }
 
     /// True if any parameter is at its bound, shape parameters included.
@@ -128,6 +135,10 @@ impl Unknowns {
         };
         self.all.iter().filter_map(of).collect()
     }
+}
+
+fn names(of: Vec<&Added>) -> Vec<String> {
+    of.into_iter().map(|own| own.name.clone()).collect()
 }
 
 fn is_at_bound(explanation: &Explanation, name: &str) -> bool {
