@@ -63,7 +63,11 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
         let replaces =
             |&other: &usize| is_enough(&sets[other]) || explains_in_one_form(&sets[other], set, sets, evidence);
         let is_less = |other: &usize| sets[*other].names().len() < set.names().len();
-        let is_answer = |other: &usize| is_less(other) && !sets[*other].has_magnitude_at_bound(evidence);
+        let is_at_bound = |other: &Set| {
+            let explains = excess(&other.explanation, evidence) <= unexplained;
+            other.has_magnitude_at_bound(explains)
+        };
+        let is_answer = |other: &usize| is_less(other) && !is_at_bound(&sets[*other]);
         let mut parts = most_probable_first(sets, (0..sets.len()).filter(is_answer));
         let mut known = HashSet::new();
         parts.retain(|&part| known.insert(sets[part].names()));

@@ -275,16 +275,15 @@ impl Set {
         effects.map(finding).collect()
     }
 
-    /// True if a named effect has a magnitude at its bound.
-    pub fn has_magnitude_at_bound(&self, evidence: &Evidence) -> bool {
-        self.named().any(|own| self.is_magnitude_at_bound(own, evidence))
+    /// True if a named effect has a magnitude at its bound. A ratio counts too unless the set `explains` nearly all.
+    pub fn has_magnitude_at_bound(&self, explains: bool) -> bool {
+        self.named().any(|own| self.is_magnitude_at_bound(own, explains))
     }
 
-    /// True if a magnitude of an effect is at its bound. A ratio counts too if this set leaves more than noise.
-    fn is_magnitude_at_bound(&self, own: &Placed, evidence: &Evidence) -> bool {
+    fn is_magnitude_at_bound(&self, own: &Placed, explains: bool) -> bool {
         let unknowns = &own.unknowns;
         unknowns.has_magnitude_at_bound(&self.explanation)
-            || unknowns.has_ratio_at_bound(&self.explanation) && leaves_more_than_noise(self, evidence)
+            || !explains && unknowns.has_ratio_at_bound(&self.explanation)
     }
 
     /// True if an effect that `part` lacks has a magnitude at its bound: it then imitates another effect.
@@ -298,7 +297,8 @@ impl Set {
         let explains_little = || explained_share(part, self, evidence) < evidence.numbers.explained();
         let has_other_causes = !part.names().is_empty() || replaces_parameter() || explains_little();
         let is_at_bound = |own: &Placed| {
-            self.is_magnitude_at_bound(own, evidence)
+            let explains = explained_share(part, self, evidence) >= evidence.numbers.certain();
+            self.is_magnitude_at_bound(own, explains)
                 || has_other_causes && own.unknowns.has_parameter_at_bound(&self.explanation)
         };
         let is_new = |own: &&Placed| !part.names().contains(&own.name());
