@@ -64,8 +64,8 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
             |&other: &usize| is_enough(&sets[other]) || explains_in_one_form(&sets[other], set, sets, evidence);
         let is_less = |other: &usize| sets[*other].names().len() < set.names().len();
         let is_at_bound = |other: &Set| {
-            let explains = excess(&other.explanation, evidence) <= unexplained;
-            other.has_magnitude_at_bound(explains)
+            let explains = || excess(&other.explanation, evidence) <= unexplained;
+            other.has_magnitude_at_bound(&explains)
         };
         let is_answer = |other: &usize| is_less(other) && !is_at_bound(&sets[*other]);
         let mut parts = most_probable_first(sets, (0..sets.len()).filter(is_answer));

@@ -276,14 +276,15 @@ impl Set {
     }
 
     /// True if a named effect has a magnitude at its bound. A ratio counts too unless the set `explains` nearly all.
-    pub fn has_magnitude_at_bound(&self, explains: bool) -> bool {
+    pub fn has_magnitude_at_bound(&self, explains: &dyn Fn() -> bool) -> bool {
         self.named().any(|own| self.is_magnitude_at_bound(own, explains))
     }
 
-    fn is_magnitude_at_bound(&self, own: &Placed, explains: bool) -> bool {
+    /// Whether the set explains nearly all is computed only for a ratio at its bound, since it may need a fit.
+    fn is_magnitude_at_bound(&self, own: &Placed, explains: &dyn Fn() -> bool) -> bool {
         let unknowns = &own.unknowns;
         unknowns.has_magnitude_at_bound(&self.explanation)
-            || !explains && unknowns.has_ratio_at_bound(&self.explanation)
+            || unknowns.has_ratio_at_bound(&self.explanation) && !explains()
     }
 
     /// True if an effect that `part` lacks has a magnitude at its bound: it then imitates another effect.
@@ -297,8 +298,8 @@ impl Set {
         let explains_little = || explained_share(part, self, evidence) < evidence.numbers.explained();
         let has_other_causes = !part.names().is_empty() || replaces_parameter() || explains_little();
         let is_at_bound = |own: &Placed| {
-            let explains = explained_share(part, self, evidence) >= evidence.numbers.certain();
-            self.is_magnitude_at_bound(own, explains)
+            let explains = || explained_share(part, self, evidence) >= evidence.numbers.certain();
+            self.is_magnitude_at_bound(own, &explains)
                 || has_other_causes && own.unknowns.has_parameter_at_bound(&self.explanation)
         };
         let is_new = |own: &&Placed| !part.names().contains(&own.name());
