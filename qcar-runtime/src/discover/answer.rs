@@ -75,8 +75,8 @@ pub struct Probable {
 pub struct Discovery {
     /// The verdict.
     pub verdict: Verdict,
-    /// Probability of the verdict; `None` if it is `Unknown`, or if it is `None` because only the fitted runs prefer an
-    /// effect.
+    /// Probability of the verdict. It has none for [`Verdict::Unknown`], nor for [`Verdict::None`] if the fitted runs
+    /// prefer an effect that the held-out runs do not show.
     pub probability: Option<f64>,
     /// Most probable effects, most probable first.
     pub candidates: Vec<Probable>,

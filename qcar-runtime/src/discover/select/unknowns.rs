@@ -90,8 +90,8 @@ impl Unknowns {
         self.magnitudes.iter().any(|name| is_at_bound(explanation, name))
     }
 
-    /// True if another parameter than these and its shape is at its bound. That may be the law of a textbook, such as equal
-    /// terms of Bouc and Wen's.
+    /// True if a free parameter that is neither a magnitude nor a shape is at its bound. A law with it may be that of a
+    /// textbook, such as Bouc and Wen's with equal terms.
     pub fn has_ratio_at_bound(&self, explanation: &Explanation) -> bool {
         self.ratios.iter().any(|name| is_at_bound(explanation, name))
     }
