@@ -405,10 +405,11 @@ fn is_beyond_sweeps(run: &Run) -> bool {
     run.role == Role::Fit && !matches!(run.test, Test::Sweep(_))
 }
 
-/// `has_more` tells that further runs may determine them.
+/// `has_more` tells that further runs may determine them. A parameter on which no output depends keeps its start value,
+/// or takes that of a K&C curve.
 ///
 /// # Errors
-/// Fails if parameters are to be fitted together of which the outputs determine fewer combinations.
+/// Fails if parameters are to be fitted together of which the outputs determine some combinations, but not each.
 fn refuse_unseen(model: &Loaded, plan: &Plan, has_more: bool) -> Result<(), InputError> {
     let known = "set `fit = false` for those that are known from elsewhere, or name them with --fix";
     let remedy = match has_more {
@@ -436,7 +437,7 @@ fn refuse_unseen(model: &Loaded, plan: &Plan, has_more: bool) -> Result<(), Inpu
                 remedy.clone(),
             )
         };
-        (fitted.len() > unseen.seen).then(wrong)
+        (unseen.seen > 0 && fitted.len() > unseen.seen).then(wrong)
     };
     InputError::unless_empty(model.unseen().iter().filter_map(problem).collect(), Some(()))
 }

@@ -39,6 +39,30 @@ fn what_is_kept_stays_and_says_so() {
     assert_eq!(fit["parameters"]["c_wheel_x"]["why_no_stderr"]["reason"], "not_seen");
 }
 
+/// The model has no channel along x. The stiffness comes from the longitudinal K&C curve, as with a channel that was not
+/// measured, and the damping keeps its start value.
+#[test]
+fn a_direction_without_channels_takes_its_stiffness_from_the_longitudinal_curve() {
+    let folder = tempfile::tempdir().unwrap();
+    let campaign = folder.path().join("campaign");
+    copy(Path::new(AXLE), &campaign);
+    let text = succeeds(&["show", "axle_a", "--stage", "model"]);
+    let is_along_x = |line: &str| line.contains("_x = ") || line.contains("force f_wheel_x");
+    let without = text.lines().filter(|line| !is_along_x(line));
+    let model: Vec<&str> = without.collect();
+    fs::write(campaign.join("vertical.axle"), model.join("\n")).unwrap();
+    let toml = fs::read_to_string(campaign.join("campaign.toml")).unwrap();
+    let toml = toml.replace("model = \"axle_a\"", "model = \"vertical.axle\"");
+    fs::write(campaign.join("campaign.toml"), toml).unwrap();
+
+    let campaign = campaign.to_str().unwrap();
+    let [own, shipped] = [campaign, AXLE].map(|campaign| fitted(&[campaign]));
+    for name in ["k_wheel_x", "c_wheel_x", "k_tire"] {
+        assert_eq!(own["parameters"][name], shipped["parameters"][name]);
+    }
+    assert_eq!(own["parameters"]["k_wheel_x"]["curve"], "longitudinal");
+}
+
 /// One channel alone lets a search take one resonance for another. The text has the values of each minimum, those of
 /// JSON.
 #[test]
