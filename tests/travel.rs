@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use qcar::catalogue::compiled;
+use qcar::catalogue::{compiled, load_text};
 use qcar::effects;
 use qcar::workshop::Bench;
 use qcar_runtime::campaign::{Campaign, Role};
@@ -273,6 +273,70 @@ fn worst_slope(model: &dyn Model, given: &[(&str, f64)], evidence: &Evidence) ->
         }
     }
     worst
+}
+
+/// A sub-frame between spring and body, on a mount with friction that slips after 0.02 mm. Between two instants of the rig
+/// it moves two hundred times as far, so full steps of Newton's method go back and forth between both signs of the friction.
+const ON_A_RUBBING_MOUNT: &str = r#"
+axle rubbing {
+    "A spring on a sub-frame, whose mount rubs"
+
+    known param m_corner: kg = 430 in 50..2000 "Static mass carried by the tyre";
+    param m_wheel: kg = 40 in 5..200 "Unsprung mass";
+    param k_wheel_z: N/m = 26e3 in 1e3..1e6 "Stiffness between wheel and sub-frame";
+    param k_mount: N/m = 52e3 in 1e3..1e6 "Stiffness of the mount";
+    param c_mount: N s/m = 100 in 1..1e4 "Damping of the mount";
+    param f_rub: N = 420 in 1..1e4 "Its friction";
+
+    direction z {
+        road pad;
+        mass body = m_corner - m_wheel - 20 kg;
+        mass frame = 20 kg;
+        mass wheel = m_wheel;
+        link tire: wheel - pad { spring 2e5 N/m; damper 100 N s/m; }
+        link spring: frame - wheel { spring k_wheel_z; }
+        link mount: body - frame {
+            spring k_mount;
+            damper c_mount;
+            state rub: N;
+            rate rub = 21e6 N/m * (v - abs(v) * rub / f_rub);
+            force = rub;
+        }
+        channel wheel_to_body = body.acceleration / wheel.acceleration;
+    }
+}
+"#;
+
+/// Spring and mount are in series. While the mount slips, the rig feels its friction in the ratio of the compliances. After a
+/// reversal it sticks until the force of the spring has changed by twice the friction.
+#[test]
+fn friction_of_a_mount_in_series_with_the_spring_is_felt_by_the_rig() {
+    const REACH: f64 = 0.08;
+    let (mount, friction) = (2.0 * SPRING, 3.0 * FRICTION);
+    let slips_within = REACH - 2.0 * friction / SPRING;
+    let folder = tempfile::tempdir().unwrap();
+    let in_series = SPRING * mount / (SPRING + mount);
+    let curve = cycle(REACH, |x| in_series * x);
+    let campaign = with_sines(folder.path(), &curve, &[0.2], 1500.0);
+    let model = load_text("rubbing", ON_A_RUBBING_MOUNT)
+        .map_err(|_| "the model compiles")
+        .unwrap();
+    let evidence = Evidence::from_campaign(&campaign, model.about()).unwrap();
+    let values = values(&*model, &[("f_rub", friction), ("k_mount", mount), ("c_mount", 100.0)]);
+    let mut slipping = 0;
+    for prediction in predict(&*model, &values, &[], &evidence, Role::Fit).unwrap() {
+        let series = &evidence.series[prediction.series];
+        let is_slow = matches!(series.kind, Kind::Travel | Kind::Width);
+        for ((at, measured), said) in series.at.iter().zip(&series.value).zip(&prediction.value) {
+            assert!(said.norm().is_finite(), "{:?} at {at}", series.kind);
+            if is_slow && at.abs() < 0.98 * slips_within {
+                let error = (measured - said).norm();
+                assert!(error < 1.0, "{:?} at {at}: {measured}, not {said}", series.kind);
+                slipping += 1;
+            }
+        }
+    }
+    assert!(slipping > 20, "{slipping}");
 }
 
 /// The derivatives of the forces of a K&C rig agree with differences for a law with memory, a nonlinear spring, and

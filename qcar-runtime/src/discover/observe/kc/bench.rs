@@ -22,8 +22,8 @@ const ABSOLUTE: f64 = 1e-3;
 /// Relative difference of two time steps that counts as rounding error.
 const EQUAL: f64 = 1e-9;
 
-/// Motion of the wheel at an instant.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Motion of the wheel at an instant; by default at rest, before the first step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Instant {
     /// Travel against the body, m.
     pub travel: f64,
@@ -33,6 +33,20 @@ pub struct Instant {
     pub step: f64,
     /// True if the force is read at this instant.
     pub is_read: bool,
+}
+
+impl Instant {
+    /// Both halves of the way from another instant to this one.
+    fn halves(&self, from: &Instant) -> [Instant; 2] {
+        let step = self.step / 2.0;
+        let middle = Instant {
+            travel: from.travel.midpoint(self.travel),
+            speed: from.speed.midpoint(self.speed),
+            step,
+            is_read: false,
+        };
+        [middle, Instant { step, ..*self }]
+    }
 }
 
 /// Positions of the rig's parts in a model.
@@ -193,7 +207,7 @@ impl<'a> Drive<'a> {
     }
 
     /// Sets the wheel and the ground to an instant.
-    pub fn set_motion(&mut self, at: &Instant) {
+    fn set_motion(&mut self, at: &Instant) {
         let bench = self.bench;
         (self.x[bench.wheel], self.x[bench.wheel_speed]) = (at.travel, at.speed);
         for &(place, quantity) in &bench.ground {
@@ -220,9 +234,33 @@ impl<'a> Drive<'a> {
         self.bench.wheel_of(&self.of_unit)
     }
 
+    /// Moves the wheel and all states to an instant, and calls `then` there. Where Newton's method does not converge, it
+    /// goes through the instant halfway, and so on `halvings` times: friction that slips on a small part of the way may
+    /// have no solution near that without slip. False if that does not help either.
+    pub fn advance(
+        &mut self,
+        from: &Instant,
+        to: &Instant,
+        halvings: usize,
+        then: &mut dyn FnMut(&mut Self, &Instant),
+    ) -> bool {
+        let start = self.x.clone();
+        self.set_motion(to);
+        if self.follow(to.step) {
+            then(self, to);
+            return true;
+        }
+        let Some(halvings) = halvings.checked_sub(1) else {
+            return false;
+        };
+        self.x = start;
+        let [middle, end] = to.halves(from);
+        self.advance(from, &middle, halvings, then) && self.advance(&middle, &end, halvings, then)
+    }
+
     /// Moves the free states over `h` s by Newton's method; false if it does not converge. A linear model has a constant
     /// Jacobian, so its first step is exact.
-    pub fn follow(&mut self, h: f64) -> bool {
+    fn follow(&mut self, h: f64) -> bool {
         let last = self.free_values();
         for _ in 0..STEPS {
             let residual = self.residual(&last, h);

@@ -11,6 +11,8 @@ use nalgebra::DVector;
 use super::bench::{Bench, Drive, Factor, Instant, Slope};
 use crate::model::Model;
 
+/// How often the way between two instants is halved: a thousandth of it. A choice.
+const MOST_HALVINGS: usize = 10;
 /// Relative change of a parameter for the derivative of the rig's mobility, a ratio of masses: the error of a central
 /// difference is its square.
 const SMALL: f64 = 1e-5;
@@ -32,26 +34,32 @@ impl Bench {
         let mut tangents = tangents.collect::<Option<Vec<Tangent>>>()?;
         let mut by_parameter = vec![0.0; model.about().parameter_jacobian.len()];
         let mut forces = vec![Vec::with_capacity(path.len()); 1 + directions.len()];
-        let mut is_followed = true;
-        for instant in path {
-            drive.set_motion(instant);
-            is_followed &= drive.follow(instant.step);
+        let mut read = |drive: &mut Drive<'_>, part: &Instant| {
             let force = drive.force();
-            if instant.is_read {
-                forces[0].push(if is_followed { force } else { f64::NAN });
+            if part.is_read {
+                forces[0].push(force);
             }
             if tangents.is_empty() {
-                continue;
+                return;
             }
             model.matrices(p, &drive.x, &drive.u, &mut drive.nonzeros);
             model.parameter_jacobian(p, &drive.x, &drive.u, &mut by_parameter);
-            let factor = drive.factor(instant.step);
+            let factor = drive.factor(part.step);
             for (tangent, forces) in tangents.iter_mut().zip(&mut forces[1..]) {
-                let slope = tangent.follow(&drive, factor.as_ref(), &by_parameter, instant.step);
-                if instant.is_read {
+                let slope = tangent.follow(drive, factor.as_ref(), &by_parameter, part.step);
+                if part.is_read {
                     forces.push(slope);
                 }
             }
+        };
+        let mut before = Instant::default();
+        let is_followed = path.iter().all(|instant| {
+            let before = std::mem::replace(&mut before, *instant);
+            drive.advance(&before, instant, MOST_HALVINGS, &mut read)
+        });
+        if !is_followed {
+            let count = path.iter().filter(|instant| instant.is_read).count();
+            forces.iter_mut().for_each(|forces| forces.resize(count, f64::NAN));
         }
         Some(forces)
     }
