@@ -235,8 +235,9 @@ impl<'a> Drive<'a> {
     }
 
     /// Moves the wheel and all states to an instant, and calls `then` there. Where Newton's method does not converge, it
-    /// goes through the instant halfway, and so on `halvings` times: friction that slips on a small part of the way may
-    /// have no solution near that without slip. False if that does not help either.
+    /// first goes halfway, and so on up to `halvings` times, with `then` at each of these instants. If friction slips
+    /// within a small part of the way, the whole step goes back and forth between both signs of it. False if no
+    /// halving helps.
     pub fn advance(
         &mut self,
         from: &Instant,
