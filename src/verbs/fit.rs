@@ -409,7 +409,7 @@ fn is_beyond_sweeps(run: &Run) -> bool {
 /// or takes that of a K&C curve.
 ///
 /// # Errors
-/// Fails if parameters are to be fitted together of which the outputs determine some combinations, but not each.
+/// Fails if the outputs determine only combinations of parameters that are to be fitted together.
 fn refuse_unseen(model: &Loaded, plan: &Plan, has_more: bool) -> Result<(), InputError> {
     let known = "set `fit = false` for those that are known from elsewhere, or name them with --fix";
     let remedy = match has_more {

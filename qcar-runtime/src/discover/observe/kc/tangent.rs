@@ -11,7 +11,7 @@ use nalgebra::DVector;
 use super::bench::{Bench, Drive, Factor, Instant, Slope};
 use crate::model::Model;
 
-/// How often the way between two instants is halved: a thousandth of it. A choice.
+/// How often the way between two instants is halved at most: down to a thousandth of it. A choice.
 const MOST_HALVINGS: usize = 10;
 /// Relative change of a parameter for the derivative of the rig's mobility, a ratio of masses: the error of a central
 /// difference is its square.
