@@ -11,7 +11,7 @@ use crate::discover::noise::{AccuracyClass, Known};
 use crate::least_squares::{Outcome, Problem, gram};
 
 impl Posterior<'_> {
-    /// Sets the accuracy class to the most probable one at the optimum of a search.
+    /// Sets the accuracy class to the most probable one at the end of a search.
     pub fn estimate_accuracy(&mut self, outcome: &Outcome) {
         if self.nuisance.known != Known::Nothing {
             return;
@@ -35,7 +35,7 @@ struct Marginal {
 }
 
 impl Marginal {
-    /// At the optimum of a search; `None` without shelves, or if another unknown is not determined.
+    /// At the end of a search; `None` without shelves, or if another unknown is not determined.
     fn of(posterior: &Posterior<'_>, outcome: &Outcome) -> Option<Self> {
         let first = posterior.free.len();
         let shelves: Vec<usize> = posterior.nuisance.shelves().map(|k| first + k).collect();
@@ -50,13 +50,16 @@ impl Marginal {
         };
         let along = block(&others, &shelves);
         let imitated = Cholesky::new(block(&others, &others))?.solve(&along);
+        let gradient = outcome.jacobian.tr_mul(&outcome.residual);
+        let rows = |places: &[usize]| DVector::from_iterator(places.len(), places.iter().map(|&k| gradient[k]));
         let prior = posterior.nuisance.accuracy.shelf().powi(-2);
         let data = block(&shelves, &shelves)
             - along.tr_mul(&imitated)
             - DMatrix::identity(shelves.len(), shelves.len()) * prior;
         let coefficients = DVector::from_iterator(shelves.len(), shelves.iter().map(|&k| outcome.x[k]));
-        // At the optimum the slopes of likelihood and prior cancel.
-        let slope = &data * &coefficients + &coefficients * prior;
+        // At an optimum the slopes of likelihood and prior cancel. A search that ends before leaves the rest of its gradient.
+        let rest = rows(&shelves) - imitated.tr_mul(&rows(&others));
+        let slope = &data * &coefficients + &coefficients * prior - rest;
         let directions = data.symmetric_eigen();
         Some(Self {
             information: directions.eigenvalues.map(|value| value.max(0.0)),
