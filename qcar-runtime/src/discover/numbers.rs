@@ -12,8 +12,8 @@ pub struct Numbers {
     /// each part is one half.
     pub common_to_levels: f64,
 
-    /// Correlation length of the discrepancy over frequency, octaves: the half-power bandwidth of a mode with a damping
-    /// ratio of one quarter. That ratio is a choice.
+    /// Longest correlation length of the discrepancy over frequency, octaves: the half-power bandwidth of a mode with a
+    /// damping ratio of one quarter, such as a wheel on its tyre.
     pub correlation_octaves: f64,
 
     /// False-alarm rate of the screening: at most this share of clean campaigns has a candidate above the threshold. By
@@ -33,6 +33,13 @@ pub struct Numbers {
     /// hardware mostly has no cause in the catalogue, and some effect explains half of that by chance.
     pub left: f64,
 }
+
+/// Number of correlation lengths of the discrepancy. Each is half the one before, and all have the same share of its
+/// variance. Over frequency they are the half-power bandwidths of modes with damping ratios from 1/4 to 1/32, as a
+/// lightly damped structure has. With the longest length alone, a model that is wrong by much but smoothly is more
+/// probable than one that is wrong by little at a resonance, and its parameters are wrong (Tuo and Wu, Efficient
+/// calibration for imperfect computer models, Annals of Statistics 43, 2015).
+pub const CORRELATION_LENGTHS: i32 = 4;
 
 /// Largest number of effects in a set. A choice: the search time grows with each effect.
 pub const MOST_EFFECTS: usize = 3;

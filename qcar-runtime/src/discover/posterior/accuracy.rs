@@ -44,27 +44,12 @@ impl Marginal {
         }
         let is_other = |k: &usize| outcome.at_bound[*k] == 0 && !shelves.contains(k);
         let others: Vec<usize> = (0..posterior.variables()).filter(is_other).collect();
-        let hessian = gram(&outcome.jacobian);
-        let block = |rows: &[usize], columns: &[usize]| -> DMatrix<f64> {
-            DMatrix::from_fn(rows.len(), columns.len(), |i, j| hessian[(rows[i], columns[j])])
+        let reached = Reached {
+            x: &outcome.x,
+            gradient: outcome.jacobian.tr_mul(&outcome.residual),
+            hessian: gram(&outcome.jacobian),
         };
-        let along = block(&others, &shelves);
-        let imitated = Cholesky::new(block(&others, &others))?.solve(&along);
-        let gradient = outcome.jacobian.tr_mul(&outcome.residual);
-        let rows = |places: &[usize]| DVector::from_iterator(places.len(), places.iter().map(|&k| gradient[k]));
-        let prior = posterior.nuisance.accuracy.shelf().powi(-2);
-        let data = block(&shelves, &shelves)
-            - along.tr_mul(&imitated)
-            - DMatrix::identity(shelves.len(), shelves.len()) * prior;
-        let coefficients = DVector::from_iterator(shelves.len(), shelves.iter().map(|&k| outcome.x[k]));
-        // At an optimum the slopes of likelihood and prior cancel. A search that ends before leaves the rest of its gradient.
-        let rest = rows(&shelves) - imitated.tr_mul(&rows(&others));
-        let slope = &data * &coefficients + &coefficients * prior - rest;
-        let directions = data.symmetric_eigen();
-        Some(Self {
-            information: directions.eigenvalues.map(|value| value.max(0.0)),
-            slope: directions.eigenvectors.tr_mul(&slope),
-        })
+        reached.marginal(&shelves, &others, posterior.nuisance.accuracy.shelf())
     }
 
     fn most_probable_class(&self) -> AccuracyClass {
@@ -84,11 +69,42 @@ impl Marginal {
     }
 }
 
+/// Where a search ended, with the gradient and the Hessian of the negative log posterior density.
+struct Reached<'a> {
+    x: &'a [f64],
+    gradient: DVector<f64>,
+    hessian: DMatrix<f64>,
+}
+
+impl Reached<'_> {
+    /// Likelihood of the shelves, whose prior has the standard deviation `shelf`, with the others integrated out.
+    fn marginal(&self, shelves: &[usize], others: &[usize], shelf: f64) -> Option<Marginal> {
+        let block = |rows: &[usize], columns: &[usize]| -> DMatrix<f64> {
+            DMatrix::from_fn(rows.len(), columns.len(), |i, j| self.hessian[(rows[i], columns[j])])
+        };
+        let slopes = |places: &[usize]| DVector::from_fn(places.len(), |i, _| self.gradient[places[i]]);
+        let along = block(others, shelves);
+        let imitated = Cholesky::new(block(others, others))?.solve(&along);
+        let prior = shelf.powi(-2);
+        let data =
+            block(shelves, shelves) - along.tr_mul(&imitated) - DMatrix::identity(shelves.len(), shelves.len()) * prior;
+        let coefficients = DVector::from_fn(shelves.len(), |i, _| self.x[shelves[i]]);
+        // At an optimum the slopes of likelihood and prior cancel. A search that ends before it leaves a rest.
+        let rest = slopes(shelves) - imitated.tr_mul(&slopes(others));
+        let slope = &data * &coefficients + &coefficients * prior - rest;
+        let directions = data.symmetric_eigen();
+        Some(Marginal {
+            information: directions.eigenvalues.map(|value| value.max(0.0)),
+            slope: directions.eigenvectors.tr_mul(&slope),
+        })
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use nalgebra::DVector;
+    use nalgebra::{DMatrix, DVector};
 
-    use super::{AccuracyClass, Marginal};
+    use super::{AccuracyClass, Marginal, Reached};
 
     /// Shelves of this size with alternating signs, each known to `error`.
     fn shelves(size: f64, error: f64) -> Marginal {
@@ -110,5 +126,36 @@ mod tests {
     #[test]
     fn shelves_within_their_noise_leave_the_class_of_the_data_sheets() {
         assert_eq!(shelves(0.05, 0.05).most_probable_class(), AccuracyClass::default());
+    }
+
+    /// A quadratic posterior has the same likelihood of its shelves from everywhere. Without the rest of the gradient,
+    /// a search that ends early finds sensors of another class.
+    #[test]
+    fn a_search_that_ends_early_finds_the_class_of_the_optimum() {
+        let class = AccuracyClass::all().nth(3).expect("there are nine");
+        let variables = 20;
+        let jacobian = DMatrix::from_fn(60, variables, |i, j| 1e3 * (1.3 * (i * variables + j) as f64).sin());
+        let shelves: Vec<usize> = (4..variables).collect();
+        let others: Vec<usize> = (0..4).collect();
+        let prior = AccuracyClass::default().shelf().powi(-2);
+        let priors = DMatrix::from_fn(variables, variables, |i, j| if i == j && i >= 4 { prior } else { 0.0 });
+        let true_x = DVector::from_fn(
+            variables,
+            |k, _| if k % 2 == 0 { class.shelf() } else { -class.shelf() },
+        );
+        let hessian = jacobian.tr_mul(&jacobian) + priors;
+        let from = |x: &DVector<f64>| {
+            let reached = Reached {
+                x: x.as_slice(),
+                gradient: &hessian * x - jacobian.tr_mul(&(&jacobian * &true_x)),
+                hessian: hessian.clone(),
+            };
+            let marginal = reached
+                .marginal(&shelves, &others, prior.powf(-0.5))
+                .expect("all are determined");
+            marginal.most_probable_class()
+        };
+        let start = DVector::from_fn(variables, |k, _| 0.2 * (k as f64).cos());
+        assert_eq!((from(&true_x), from(&start)), (class, class));
     }
 }
