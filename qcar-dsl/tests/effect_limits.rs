@@ -780,6 +780,35 @@ fn an_elasto_slip_stack_loads_as_its_elements_do_and_unloads_along_its_stiffness
     assert!((found / wanted - 1.0).abs() < 1e-5, "{found}, not {wanted}");
 }
 
+/// Each third of a mount's friction slips at its own level, and sticks again when the motion reverses.
+#[test]
+fn friction_in_a_mount_slips_at_its_levels_and_sticks_after_a_reversal() {
+    let model = patched(&model("axle_a"), "bushing_friction", "powertrain_mount");
+    let (f_slip, k, spread) = (90.0, 2e5, 0.6);
+    let running = Running::new(&model, &[("f_slip", f_slip), ("k_stick", k), ("spread", spread)]);
+    let levels = [0.6, 1.0, 1.4].map(|level| level * f_slip / 3.0);
+    let rates = |loaded: f64, speed: f64| {
+        let state = |name: &str| match name {
+            "z_powertrain_mount_f_1" => loaded * levels[0],
+            "z_powertrain_mount_f_2" => loaded * levels[1],
+            "z_powertrain_mount_f_3" => loaded * levels[2],
+            "vz_pwt" => speed,
+            _ => 0.0,
+        };
+        let all = running.rates(&state, false);
+        let of = |wanted: &str| all.iter().find(|(name, _)| name == wanted).expect("it is a state").1;
+        let elements = [1, 2, 3].map(|k| of(&format!("z_powertrain_mount_f_{k}")));
+        (elements, of("vz_pwt"))
+    };
+    let near = |found: [f64; 3], wanted: f64| found.iter().all(|own| (own - wanted).abs() < 1e-9 * k);
+    let (slips, sticks, starts) = (rates(1.0, 0.1), rates(1.0, -0.1), rates(0.0, 0.1));
+    assert!(near(slips.0, 0.0), "{slips:?}");
+    assert!(near(sticks.0, -0.1 * k / 3.0), "{sticks:?}");
+    assert!(near(starts.0, 0.1 * k / 3.0), "{starts:?}");
+    let holds = rates(1.0, 0.0).1 * 60.0;
+    assert!((holds + f_slip).abs() < 1e-9 * f_slip, "{holds} N on the powertrain");
+}
+
 #[test]
 fn backlash_holds_nothing_for_its_gap_after_each_turn() {
     let model = in_form(

@@ -291,6 +291,7 @@ impl Corner<'_> {
             force += push;
             f[FLUID] += push - h.c_track * v[FLUID];
         }
+        force += self.remembered(y, dy, |law, inner, dy| law.powertrain_mount(rate, inner, dy));
         f[PWT] -= force;
         f[carrier] += force;
     }

@@ -42,6 +42,8 @@ pub enum Other {
     /// Rubber of nearly fractional order: three Maxwell branches whose frequencies differ by factors of five
     /// (Schiessel, H., Blumen, A.: Hierarchical analogues to fractional relaxation equations, J. Phys. A 26, 1993).
     FractionalMount { k_middle: f64, frequency: f64 },
+    /// Rubber of a powertrain mount whose filler sticks and slips: elements as in [`Self::SlipStack`].
+    RubberSlip { f_slip: f64, k_stick: f64 },
     /// A bushing along x that stiffens with the square of its travel: at `travel` its force is twice the linear one.
     CubicBushing { travel: f64 },
     /// Drag on the body, proportional to the square of its velocity.
@@ -76,6 +78,10 @@ impl Other {
                 v_slip: get("v_slip"),
             },
             "slip_stack" => Self::SlipStack {
+                f_slip: get("f_slip"),
+                k_stick: get("k_stick"),
+            },
+            "rubber_slip" => Self::RubberSlip {
                 f_slip: get("f_slip"),
                 k_stick: get("k_stick"),
             },
@@ -116,7 +122,10 @@ impl Other {
 
     /// Whether the law can stick, which needs shorter integration steps.
     pub fn is_dry(&self) -> bool {
-        matches!(self, Self::LuGre { .. } | Self::Arctan { .. } | Self::SlipStack { .. })
+        matches!(
+            self,
+            Self::LuGre { .. } | Self::Arctan { .. } | Self::SlipStack { .. } | Self::RubberSlip { .. }
+        )
     }
 
     /// Friction force parallel to the damper, N, at a velocity, m/s.
@@ -134,14 +143,7 @@ impl Other {
                 sigma0 * inner[0] + sigma1 * rate[0]
             }
             Self::Arctan { f_coulomb, v_slip } => f_coulomb * FRAC_2_PI * (v / v_slip).atan(),
-            Self::SlipStack { f_slip, k_stick } => {
-                for (k, (force, stiffness)) in [(0.2, 0.5), (0.3, 0.3), (0.5, 0.2)].into_iter().enumerate() {
-                    let part = inner[k] / (force * f_slip);
-                    let slips = if part * v > 0.0 { part.powi(6) } else { 0.0 };
-                    rate[k] = stiffness * k_stick * v * (1.0 - slips);
-                }
-                inner.iter().sum()
-            }
+            Self::SlipStack { f_slip, k_stick } => slip_stack(f_slip, k_stick, v, inner, rate),
             _ => 0.0,
         }
     }
@@ -220,6 +222,14 @@ impl Other {
         }
     }
 
+    /// Friction in the powertrain mount, N.
+    pub fn powertrain_mount(&self, v: f64, inner: &[f64], rate: &mut [f64]) -> f64 {
+        match *self {
+            Self::RubberSlip { f_slip, k_stick } => slip_stack(f_slip, k_stick, v, inner, rate),
+            _ => 0.0,
+        }
+    }
+
     /// Force of a bushing along x beyond `k` times its travel, N.
     pub fn bushing(&self, k: f64, s: f64) -> f64 {
         match *self {
@@ -246,6 +256,17 @@ fn table(digression: f64, v: f64) -> f64 {
         slope * (v.min(end) - start).max(0.0)
     };
     (0..).zip(starts.into_iter().zip(ends)).map(segment).sum()
+}
+
+/// Total force, N, of three springs in series with sliders, with unequal shares of the slip force `f_slip`, N, and of the
+/// stiffness `k_stick`, N/m. `inner` are their forces; their derivatives go to `rate`.
+fn slip_stack(f_slip: f64, k_stick: f64, v: f64, inner: &[f64], rate: &mut [f64]) -> f64 {
+    for (k, (force, stiffness)) in [(0.2, 0.5), (0.3, 0.3), (0.5, 0.2)].into_iter().enumerate() {
+        let part = inner[k] / (force * f_slip);
+        let slips = if part * v > 0.0 { part.powi(6) } else { 0.0 };
+        rate[k] = stiffness * k_stick * v * (1.0 - slips);
+    }
+    inner.iter().sum()
 }
 
 /// Total force, N, of parallel Maxwell branches, each with a stiffness, N/m, and a frequency, Hz. `inner` are the

@@ -3,7 +3,7 @@
 use super::entries::{Entry, entry};
 
 /// The laws, each with the names that count as right at the same place.
-pub const OTHER_LAWS: [(Entry, &str); 13] = [
+pub const OTHER_LAWS: [(Entry, &str); 14] = [
     (
         entry(
             "lugre_friction",
@@ -110,6 +110,15 @@ pub const OTHER_LAWS: [(Entry, &str); 13] = [
     (
         entry("quadratic_drag", "body", "c", &[("c2", [400.0, 1000.0, 2500.0])]),
         "drag_to_ground",
+    ),
+    (
+        entry(
+            "rubber_slip",
+            "powertrain_mount",
+            "a",
+            &[("f_slip", [20.0, 50.0, 120.0]), ("k_stick", [60e3, 150e3, 300e3])],
+        ),
+        "bushing_friction",
     ),
 ];
 
