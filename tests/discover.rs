@@ -920,6 +920,44 @@ fn are_at_the_mount(answer: &Value, mount: &str, verdict: &str, expected: &[&str
     assert!(effects.iter().all(|own| own["at"] == mount), "{answer}");
 }
 
+/// The rubber of a powertrain's mount sticks and slips, in another form than the catalogue's.
+#[test]
+#[ignore = "a whole search; .ci/run runs it"]
+fn friction_within_the_rubber_of_a_mount_is_found() {
+    let answer = of_short_sweeps("a", 4714, slipping_rubber());
+    are_at_the_mount(&answer, "powertrain_mount", "found", &["bushing_friction"]);
+    assert!(answer["effects"][0]["evidence"]["gap_closed"].as_f64() > Some(0.9), "{answer}");
+}
+
+/// The mount belongs to a powertrain that the model lacks too. The powertrain alone explains only a part of the
+/// residual: its frequency falls with the amplitude.
+#[test]
+#[ignore = "a whole search; .ci/run runs it"]
+fn a_powertrain_is_found_together_with_the_friction_of_its_mount() {
+    let powertrain = [
+        ("m_pwt", 68.0),
+        ("k_pwt_z", 190e3),
+        ("c_pwt_z", 420.0),
+        ("k_pwt_x", 320e3),
+        ("c_pwt_x", 650.0),
+    ];
+    let powertrain = Hidden::new("suspended_mass", "body", &powertrain);
+    let answer = answer_to(short_sweeps("a", 4715, vec![powertrain, slipping_rubber()]));
+    assert_eq!(answer["verdict"], "found", "{answer}");
+    let effects = answer["effects"].as_array().expect("effects");
+    let found: Vec<_> = effects.iter().map(|own| [&own["name"], &own["at"]]).collect();
+    let hidden = [["suspended_mass", "body"], ["bushing_friction", "powertrain_mount"]];
+    assert_eq!(found, hidden, "{answer}");
+}
+
+fn slipping_rubber() -> Hidden {
+    Hidden::new(
+        "rubber_slip",
+        "powertrain_mount",
+        &[("f_slip", 60.0), ("k_stick", 200e3)],
+    )
+}
+
 /// The stop acts over the last 12 mm of the K&C curve, far beyond the travel of the sweeps.
 #[test]
 #[ignore = "a whole search; .ci/run runs it"]
