@@ -926,7 +926,10 @@ fn are_at_the_mount(answer: &Value, mount: &str, verdict: &str, expected: &[&str
 fn friction_within_the_rubber_of_a_mount_is_found() {
     let answer = of_short_sweeps("a", 4714, slipping_rubber());
     are_at_the_mount(&answer, "powertrain_mount", "found", &["bushing_friction"]);
-    assert!(answer["effects"][0]["evidence"]["gap_closed"].as_f64() > Some(0.9), "{answer}");
+    assert!(
+        answer["effects"][0]["evidence"]["gap_closed"].as_f64() > Some(0.9),
+        "{answer}"
+    );
 }
 
 /// The mount belongs to a powertrain that the model lacks too. The powertrain alone explains only a part of the
