@@ -866,14 +866,17 @@ fn inaccurate_sensors_of_the_base_model_do_not_dismiss_an_effect() {
     );
 }
 
-/// Without the body's bending, a hydraulic mount explains more of the residuals than the compliant end of the damper.
+/// Without the body's bending, a hydraulic mount explains more of the residuals than the compliant end of the damper. It
+/// explains less than half of them, so it is no answer, but the most probable candidate.
 #[test]
 #[ignore = "a whole search; .ci/run runs it"]
-fn an_effect_that_the_bending_of_the_body_hides_is_found() {
+fn an_effect_that_the_bending_of_the_body_hides_is_the_most_probable() {
     let hidden = of_case(99, "hardware series_compliance@damper seed 99");
     let answer = answer_to(with_three_sweeps(hidden));
-    assert_eq!(answer["verdict"], "found", "{answer}");
-    assert_eq!(answer["effects"][0]["name"], "series_compliance", "{answer}");
+    assert_eq!(answer["verdict"], "unknown", "{answer}");
+    let candidate = &answer["candidates"][0];
+    assert_eq!(candidate["effect"], "series_compliance", "{answer}");
+    assert!(candidate["probability"].as_f64() > Some(0.95), "{answer}");
     assert_eq!(answer["nuisances"][0]["name"], "body_bending", "{answer}");
 }
 

@@ -34,12 +34,12 @@ pub struct Numbers {
     pub left: f64,
 }
 
-/// Number of correlation lengths of the discrepancy. Each is half the one before, and all have the same share of its
-/// variance. Over frequency they are the half-power bandwidths of modes with damping ratios from 1/4 to 1/32, as a
-/// lightly damped structure has. With the longest length alone, a model that is wrong by much but smoothly is more
-/// probable than one that is wrong by little at a resonance, and its parameters are wrong (Tuo and Wu, Efficient
-/// calibration for imperfect computer models, Annals of Statistics 43, 2015).
-pub const CORRELATION_LENGTHS: i32 = 4;
+/// Number of correlation lengths of the discrepancy over frequency. Each is half the one before, and all have the same
+/// share of its variance: the half-power bandwidths of modes with damping ratios of 1/4, as of a wheel on its tyre, and
+/// 1/8, as of a part on rubber. With the longer one alone, a model that is wrong by much but smoothly is more probable
+/// than one that is wrong by little at a resonance, and its parameters are wrong (Tuo and Wu, Efficient calibration for
+/// imperfect computer models, Annals of Statistics 43, 2015).
+pub const CORRELATION_LENGTHS: i32 = 2;
 
 /// Largest number of effects in a set. A choice: the search time grows with each effect.
 pub const MOST_EFFECTS: usize = 3;

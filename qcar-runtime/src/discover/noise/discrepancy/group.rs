@@ -197,12 +197,14 @@ impl Group {
 
 /// Correlation of two discrepancies at distance `r`, by Wendland's functions: positive definite, and zero from `r` = 1
 /// on. A discontinuous law makes the samples of a record jump, so they get φ₃,₀, which is only continuous. All other
-/// kinds are smooth and get φ₃,₁, which is twice continuously differentiable, as the mean over several lengths.
+/// kinds are smooth and get φ₃,₁, which is twice continuously differentiable; the harmonics of sweeps, where modes
+/// appear, get its mean over several lengths.
 fn correlation(kind: Kind, r: f64) -> f64 {
     let smooth = |r: f64| (1.0 - r).max(0.0).powi(4) * (4.0 * r + 1.0);
     match kind {
         Kind::Time => (1.0 - r).max(0.0).powi(2),
-        _ => mean((0..CORRELATION_LENGTHS).map(|halvings| smooth(r * f64::from(halvings).exp2()))),
+        Kind::Harmonic(_) => mean((0..CORRELATION_LENGTHS).map(|halvings| smooth(r * f64::from(halvings).exp2()))),
+        _ => smooth(r),
     }
 }
 
