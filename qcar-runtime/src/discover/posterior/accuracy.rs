@@ -134,7 +134,7 @@ mod tests {
     fn a_search_that_ends_early_finds_the_class_of_the_optimum() {
         let class = AccuracyClass::all().nth(3).expect("there are nine");
         let variables = 20;
-        let jacobian = DMatrix::from_fn(60, variables, |i, j| 1e3 * (1.3 * (i * variables + j) as f64).sin());
+        let jacobian = DMatrix::from_fn(60, variables, |i, j| 1e3 * (1.3 * ((i + 1) * (j + 3)) as f64).sin());
         let shelves: Vec<usize> = (4..variables).collect();
         let others: Vec<usize> = (0..4).collect();
         let prior = AccuracyClass::default().shelf().powi(-2);
