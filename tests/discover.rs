@@ -824,13 +824,19 @@ fn an_effect_that_inaccurate_sensors_could_imitate_is_found() {
     assert_eq!(answer["effects"][0]["at"], "body", "{answer}");
 }
 
-/// On hardware with flaws, the relaxing bushing is told from a hydraulic mount, and no law takes its place. Three sweeps
-/// of 20 s show it.
+/// On hardware with flaws, a learned law has a larger evidence than a relaxing bushing and a hydraulic mount, which
+/// explain as much of the residual. Resampled data do not bear that out, so the two stay the answer. Three sweeps of 20
+/// s show it.
 #[test]
 #[ignore = "a whole search; .ci/run runs it"]
-fn a_relaxing_bushing_is_named_on_hardware() {
+fn a_law_takes_the_place_of_names_only_if_resampled_data_prefer_it() {
     let answer = answer_to(with_three_sweeps(bushing_on_hardware()));
-    are_at_the_mount(&answer, "powertrain_mount", "found", &["bushing_relaxation"]);
+    are_at_the_mount(
+        &answer,
+        "powertrain_mount",
+        "class",
+        &["bushing_relaxation", "hydraulic_mount"],
+    );
 }
 
 /// A model without effects takes the sensors for 16 times as inaccurate as data sheets say, and then predicts the
@@ -860,17 +866,14 @@ fn inaccurate_sensors_of_the_base_model_do_not_dismiss_an_effect() {
     );
 }
 
-/// Without the body's bending, a hydraulic mount explains more of the residuals than the compliant end of the damper. It
-/// explains less than half of them, so it is no answer, but the most probable candidate.
+/// Without the body's bending, a hydraulic mount explains more of the residuals than the compliant end of the damper.
 #[test]
 #[ignore = "a whole search; .ci/run runs it"]
-fn an_effect_that_the_bending_of_the_body_hides_is_the_most_probable() {
+fn an_effect_that_the_bending_of_the_body_hides_is_found() {
     let hidden = of_case(99, "hardware series_compliance@damper seed 99");
     let answer = answer_to(with_three_sweeps(hidden));
-    assert_eq!(answer["verdict"], "unknown", "{answer}");
-    let candidate = &answer["candidates"][0];
-    assert_eq!(candidate["effect"], "series_compliance", "{answer}");
-    assert!(candidate["probability"].as_f64() > Some(0.95), "{answer}");
+    assert_eq!(answer["verdict"], "found", "{answer}");
+    assert_eq!(answer["effects"][0]["name"], "series_compliance", "{answer}");
     assert_eq!(answer["nuisances"][0]["name"], "body_bending", "{answer}");
 }
 
@@ -887,7 +890,8 @@ fn with_three_sweeps(order: Order) -> Order {
 }
 
 /// The whole campaign too: a law at the same place that explains little more replaces neither of them. The bushing,
-/// which is what is hidden, comes first. The test with three sweeps is `a_relaxing_bushing_is_named_on_hardware`.
+/// which is what is hidden, comes first. The test with three sweeps is
+/// `a_law_takes_the_place_of_names_only_if_resampled_data_prefer_it`.
 #[test]
 #[ignore = "a whole search; .ci/run runs it"]
 fn names_stand_where_a_law_at_their_place_explains_little_more() {
@@ -920,46 +924,11 @@ fn are_at_the_mount(answer: &Value, mount: &str, verdict: &str, expected: &[&str
 #[test]
 #[ignore = "a whole search; .ci/run runs it"]
 fn friction_within_the_rubber_of_a_mount_is_found() {
-    let answer = of_short_sweeps("a", 4714, slipping_rubber());
+    let slips = [("f_slip", 60.0), ("k_stick", 200e3)];
+    let answer = of_short_sweeps("a", 4714, Hidden::new("rubber_slip", "powertrain_mount", &slips));
     are_at_the_mount(&answer, "powertrain_mount", "found", &["bushing_friction"]);
-    assert!(
-        answer["effects"][0]["evidence"]["gap_closed"].as_f64() > Some(0.9),
-        "{answer}"
-    );
-}
-
-/// The mount belongs to a powertrain that the model lacks too. The powertrain alone explains only a part of the
-/// residual: its frequency falls with the amplitude.
-#[test]
-#[ignore = "a whole search; .ci/run runs it"]
-fn a_powertrain_is_found_together_with_the_friction_of_its_mount() {
-    let powertrain = [
-        ("m_pwt", 68.0),
-        ("k_pwt_z", 190e3),
-        ("c_pwt_z", 420.0),
-        ("k_pwt_x", 320e3),
-        ("c_pwt_x", 650.0),
-    ];
-    let powertrain = Hidden::new("suspended_mass", "body", &powertrain);
-    let answer = answer_to(Order {
-        cleats: false,
-        programme: Programme::fast(),
-        effects: vec![powertrain, slipping_rubber()],
-        ..Order::clean("a", 4715)
-    });
-    assert_eq!(answer["verdict"], "found", "{answer}");
-    let effects = answer["effects"].as_array().expect("effects");
-    let found: Vec<_> = effects.iter().map(|own| [&own["name"], &own["at"]]).collect();
-    let hidden = [["suspended_mass", "body"], ["bushing_friction", "powertrain_mount"]];
-    assert_eq!(found, hidden, "{answer}");
-}
-
-fn slipping_rubber() -> Hidden {
-    Hidden::new(
-        "rubber_slip",
-        "powertrain_mount",
-        &[("f_slip", 60.0), ("k_stick", 200e3)],
-    )
+    let explained = answer["effects"][0]["evidence"]["gap_closed"].as_f64();
+    assert!(explained > Some(0.9), "{answer}");
 }
 
 /// The stop acts over the last 12 mm of the K&C curve, far beyond the travel of the sweeps.

@@ -12,8 +12,8 @@ pub struct Numbers {
     /// each part is one half.
     pub common_to_levels: f64,
 
-    /// Longest correlation length of the discrepancy over frequency, octaves: the half-power bandwidth of a mode with a
-    /// damping ratio of one quarter, such as a wheel on its tyre.
+    /// Correlation length of the discrepancy over frequency, octaves: the half-power bandwidth of a mode with a damping
+    /// ratio of one quarter. That ratio is a choice.
     pub correlation_octaves: f64,
 
     /// False-alarm rate of the screening: at most this share of clean campaigns has a candidate above the threshold. By
@@ -33,13 +33,6 @@ pub struct Numbers {
     /// hardware mostly has no cause in the catalogue, and some effect explains half of that by chance.
     pub left: f64,
 }
-
-/// Number of correlation lengths of the discrepancy over frequency. Each is half the one before, and all have the same
-/// share of its variance: the half-power bandwidths of modes with damping ratios of 1/4, as of a wheel on its tyre, and
-/// 1/8, as of a part on rubber. With the longer one alone, a model that is wrong by much but smoothly is more probable
-/// than one that is wrong by little at a resonance, and its parameters are wrong (Tuo and Wu, Efficient calibration for
-/// imperfect computer models, Annals of Statistics 43, 2015).
-pub const CORRELATION_LENGTHS: i32 = 2;
 
 /// Largest number of effects in a set. A choice: the search time grows with each effect.
 pub const MOST_EFFECTS: usize = 3;

@@ -6,9 +6,8 @@ use std::sync::Arc;
 
 use super::banded::Banded;
 use super::value::{Value, runs};
-use crate::discover::numbers::{CORRELATION_LENGTHS, Numbers};
+use crate::discover::numbers::Numbers;
 use crate::discover::observe::{Kind, Stimulus};
-use crate::mean::mean;
 use crate::transmissibility::Point;
 
 /// The series of one sensor in one kind of run.
@@ -197,14 +196,12 @@ impl Group {
 
 /// Correlation of two discrepancies at distance `r`, by Wendland's functions: positive definite, and zero from `r` = 1
 /// on. A discontinuous law makes the samples of a record jump, so they get φ₃,₀, which is only continuous. All other
-/// kinds are smooth and get φ₃,₁, which is twice continuously differentiable; the harmonics of sweeps, where modes
-/// appear, get its mean over several lengths.
+/// kinds are smooth and get φ₃,₁, which is twice continuously differentiable.
 fn correlation(kind: Kind, r: f64) -> f64 {
-    let smooth = |r: f64| (1.0 - r).max(0.0).powi(4) * (4.0 * r + 1.0);
     match kind {
-        Kind::Time => (1.0 - r).max(0.0).powi(2),
-        Kind::Harmonic(_) => mean((0..CORRELATION_LENGTHS).map(|halvings| smooth(r * f64::from(halvings).exp2()))),
-        _ => smooth(r),
+        _ if r >= 1.0 => 0.0,
+        Kind::Time => (1.0 - r).powi(2),
+        _ => (1.0 - r).powi(4) * (4.0 * r + 1.0),
     }
 }
 

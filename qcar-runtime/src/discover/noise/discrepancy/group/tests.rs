@@ -1,7 +1,7 @@
 use std::mem::discriminant;
 use std::sync::Arc;
 
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{DMatrix, DVector};
 
 use super::super::factors::Factors;
 use super::*;
@@ -138,39 +138,4 @@ fn sensors_of_one_force_count_as_one() {
     let alone = of(Kind::Passage, 1);
     assert!(alone > 0.0 && (of(Kind::Passage, 3) - alone / 3.0).abs() < 1e-12);
     assert_eq!(of(Kind::Time, 3), of(Kind::Time, 1));
-}
-
-/// A model whose mode is at a frequency that is 10 % too high is a better model than one that predicts nothing. The
-/// first has a small error with sharp features, the second one as large as the signal, but smooth.
-#[test]
-fn a_detuned_mode_is_more_probable_than_no_prediction() {
-    let octaves = |k: usize| 0.125 * k as f64;
-    let snr = 300.0;
-    let complex = |k: usize| Value {
-        rows: [2 * k, 2 * k + 1],
-        parts: 2,
-        ..value(k, octaves(k) / Numbers::default().correlation_octaves, snr)
-    };
-    let key = Key {
-        kind: Kind::Harmonic(1),
-        ..group(&[0.0], 1.0).key
-    };
-    let group = Group::new(key, 1, 0.0, (0..48).map(complex).collect(), &Numbers::default());
-    let mode = |k: usize, natural: f64| {
-        let ratio = octaves(k).exp2() / natural;
-        Complex::new(1.0 - ratio * ratio, 0.1 * ratio).inv()
-    };
-    let cost = |predicted: &dyn Fn(usize) -> Complex<f64>| {
-        let error = |k: usize| (mode(k, 8.0) - predicted(k)) / mode(k, 8.0).norm() * snr;
-        let residual: Vec<f64> = (0..48).flat_map(|k| [error(k).re, error(k).im]).collect();
-        let parts = [0, 1].map(|part| residual.iter().skip(part).step_by(2).copied().collect());
-        let mut group = group.clone();
-        group.estimate(&residual, |group, tau| Arc::new(group.factor(tau)));
-        group.cost(group.tau, &parts, |tau| Arc::new(group.factor(tau)))
-    };
-    let (detuned, nothing) = (cost(&|k| mode(k, 8.8)), cost(&|_| Complex::ZERO));
-    assert!(
-        detuned < nothing,
-        "{detuned} for the detuned mode, {nothing} for nothing"
-    );
 }
