@@ -89,9 +89,9 @@ impl Reached<'_> {
         let data =
             block(shelves, shelves) - along.tr_mul(&imitated) - DMatrix::identity(shelves.len(), shelves.len()) * prior;
         let coefficients = DVector::from_fn(shelves.len(), |i, _| self.x[shelves[i]]);
-        // At an optimum the slopes of likelihood and prior cancel. A search that ends before it leaves a rest.
-        let rest = slopes(shelves) - imitated.tr_mul(&slopes(others));
-        let slope = &data * &coefficients + &coefficients * prior - rest;
+        // At an optimum the slopes of likelihood and prior cancel. Before it, a part of the gradient remains.
+        let remaining = slopes(shelves) - imitated.tr_mul(&slopes(others));
+        let slope = &data * &coefficients + &coefficients * prior - remaining;
         let directions = data.symmetric_eigen();
         Some(Marginal {
             information: directions.eigenvalues.map(|value| value.max(0.0)),
@@ -128,7 +128,7 @@ mod tests {
         assert_eq!(shelves(0.05, 0.05).most_probable_class(), AccuracyClass::default());
     }
 
-    /// A quadratic posterior has the same likelihood of its shelves from everywhere. Without the rest of the gradient,
+    /// A quadratic posterior has the same likelihood of its shelves from everywhere. Without the gradient that remains,
     /// a search that ends early finds sensors of another class.
     #[test]
     fn a_search_that_ends_early_finds_the_class_of_the_optimum() {
