@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use super::misfit::Misfit;
 use super::refit::Refit;
 use crate::campaign::Role;
+use crate::discover::noise::Factors;
 use crate::discover::observe::{Evidence, PredictError};
 use crate::model::About;
 use crate::response::parameters::Values;
@@ -68,6 +69,19 @@ impl Explanation {
     pub fn log_likelihoods_of_passages(&self, evidence: &Evidence) -> Option<Vec<f64>> {
         let discrepancy = self.refit.discrepancy.as_ref()?.carried_to(evidence, Role::Fit);
         Some(discrepancy.log_likelihoods_of_passages(self.residual(Role::Fit, evidence)))
+    }
+
+    /// Logarithmic score: the log likelihood of the held-out runs, up to a constant, with the log prior of their
+    /// discrepancy; `None` without a discrepancy. The held-out residuals determine its scale `τ`. With that of the
+    /// fitted runs, a model with a small discrepancy would be penalised for any part of the signal that only the
+    /// held-out runs excite, and a model that is wrong everywhere would not.
+    pub fn log_score(&self, evidence: &Evidence) -> Option<f64> {
+        let mut residual = self.residual(Role::HeldOut, evidence);
+        let mut discrepancy = self.refit.discrepancy.as_ref()?.carried_to(evidence, Role::HeldOut);
+        discrepancy.estimate(&residual, &Factors::default());
+        discrepancy.whiten(&mut residual);
+        let square: f64 = residual.iter().map(|value| value * value).sum();
+        Some(-square / 2.0 - discrepancy.cost())
     }
 
     /// Residual of the runs of a role, in units of the noise.

@@ -82,18 +82,13 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
 /// judge, it is true unless the prediction is certainly worse, or if no run is held out. With sensor errors of its own, a
 /// set that lacks an effect could attribute its residual to inaccurate sensors, and its prediction would then seem as
 /// good.
-///
-/// A set that explains nearly all of the residual counts as better whatever its score. The score assumes that the
-/// discrepancy of the held-out runs is that of the fitted ones. If the motion is sensitive to its initial state, small
-/// parameter errors grow along a record and the discrepancy of the held-out runs is larger. The score then prefers a
-/// set that is wrong in the fitted runs too, because that set has a large discrepancy already.
 pub fn predicts_better(set: &Set, other: &Set, evidence: &Evidence) -> bool {
     let none_held_out = evidence.of_role(Role::HeldOut).next().is_none();
     let is_better = || match evidence.judging() {
         Role::HeldOut => gain_in_score(set, other, evidence) > 0.0,
         Role::Fit => !predicts_certainly_worse(set, other, evidence),
     };
-    none_held_out || is_better() || explained_share(other, set, evidence) >= evidence.numbers.certain()
+    none_held_out || is_better()
 }
 
 /// True if a set predicts the held-out runs no better than a part of it, and explains less of the excess residual of the
@@ -112,8 +107,7 @@ fn predicts_certainly_worse(set: &Set, other: &Set, evidence: &Evidence) -> bool
 
 /// Logarithmic score of a set less that of another set with the same sensor errors.
 fn gain_in_score(set: &Set, other: &Set, evidence: &Evidence) -> f64 {
-    let score = |own: &Explanation| log_score(own, evidence);
-    score(&set.explanation) - score(&other.with_sensors_of(set, evidence))
+    log_score(&set.explanation, evidence) - log_score(&other.with_sensors_of(set, evidence), evidence)
 }
 
 /// True if a set fits the fitted runs alone: it predicts the held-out runs no better than the base model, and `other` is
@@ -140,8 +134,8 @@ fn rests_on_passages(set: &Set, part: &Set, evidence: &Evidence) -> bool {
     largest > 0.0 && set.log_posterior() - part.log_posterior() - largest < evidence.numbers.odds_of_certain().ln()
 }
 
-/// Logarithmic score: the log likelihood of the held-out runs, up to a constant.
+/// Logarithmic score; negative infinity if the model has no finite response.
 fn log_score(own: &Explanation, evidence: &Evidence) -> f64 {
-    let parts = own.log_likelihoods(Role::HeldOut, evidence);
-    parts.map_or(f64::NEG_INFINITY, |parts| parts.iter().sum())
+    let score = own.log_score(evidence);
+    score.filter(|own| own.is_finite()).unwrap_or(f64::NEG_INFINITY)
 }
