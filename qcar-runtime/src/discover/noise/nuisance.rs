@@ -26,7 +26,7 @@ pub struct Nuisance {
     pub shelves: usize,
     /// Accuracy class of the calibration curves.
     pub accuracy: AccuracyClass,
-    /// What a fit takes as known about the sensors.
+    /// What a fit takes as known.
     pub known: Known,
     /// Suspected errors beyond the calibration.
     pub suspects: Vec<Suspect>,
@@ -38,13 +38,15 @@ pub struct Nuisance {
     pub initial_states: Vec<InitialState>,
 }
 
-/// What a fit takes as known about the sensors.
+/// What a fit takes as known about the sensors and the discrepancy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Known {
-    /// Nothing: it estimates the errors of the sensors and their accuracy class.
+    /// Nothing: it estimates the errors of the sensors, their accuracy class and the discrepancy.
     Nothing,
     /// The accuracy class.
     Class,
+    /// The accuracy class and the discrepancy.
+    Variances,
     /// The accuracy class, and the errors of [`SENSOR`] and the shelves.
     Errors,
 }

@@ -40,7 +40,7 @@ impl Posterior<'_> {
         let bounds = self.bounds();
         let outcome = match self.nuisance.known {
             Known::Errors => minimize_holding(self, start, &self.held(), &bounds, &options),
-            Known::Nothing | Known::Class => minimize(self, start, &bounds, &options),
+            Known::Nothing | Known::Class | Known::Variances => minimize(self, start, &bounds, &options),
         };
         self.failure.take().map_or(Ok(outcome), Err)
     }
@@ -95,8 +95,11 @@ impl Posterior<'_> {
         Ok(self.refit(outcome))
     }
 
-    /// Estimates the discrepancy from the residuals at a point.
+    /// Estimates the discrepancy from the residuals at a point, unless it is known.
     pub fn estimate_discrepancy(&mut self, place: &[f64]) {
+        if self.nuisance.known == Known::Variances {
+            return;
+        }
         let Some(mut discrepancy) = self.discrepancy.take() else {
             return;
         };

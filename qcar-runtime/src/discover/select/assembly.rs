@@ -404,6 +404,24 @@ impl<'a> Hypothesis<'a> {
         self.fit_knowing(Known::Class, &from, evidence, budget, DECREMENT)
     }
 
+    /// Like [`Self::fit`], with the smallest discrepancy and sensors as accurate as their data sheets: least squares.
+    ///
+    /// # Errors
+    /// As [`Self::fit`].
+    pub fn fit_by_least_squares(
+        &self,
+        from: Place,
+        evidence: &Evidence,
+        budget: (usize, usize),
+    ) -> Result<Refit, PredictError> {
+        let from = Place {
+            accuracy: AccuracyClass::default(),
+            discrepancy: Place::given(evidence).discrepancy,
+            ..from
+        };
+        self.fit_knowing(Known::Variances, &from, evidence, budget, DECREMENT)
+    }
+
     /// Like [`Self::fit`], with the sensor errors of another fit.
     ///
     /// # Errors

@@ -35,17 +35,23 @@ pub fn extensions(set: &Set, lead: f64, evidence: &Evidence, progress: Progress<
         evidence,
         progress,
     );
-    if is_missing(set, evidence)
-        && sets.iter().all(|own| !explains_fitted(set, own, evidence))
-        && let Some(start) = SearchStart::in_windows(set, &steady)
-    {
-        progress(Update::Step("screening in short windows of the records"));
-        for own in extended(set, &candidates, &start, lead, evidence, progress) {
-            keep_best(own, &mut sets);
+    for (step, start) in FAR_OFF {
+        let is_open = is_missing(set, evidence) && sets.iter().all(|own| !explains_fitted(set, own, evidence));
+        if let Some(start) = is_open.then(|| start(set, &steady)).flatten() {
+            progress(Update::Step(step));
+            for own in extended(set, &candidates, &start, lead, evidence, progress) {
+                keep_best(own, &mut sets);
+            }
         }
     }
     sets
 }
+
+/// Further starts of the search from a set that leaves a large residual as long as no extension explains nearly all of it.
+const FAR_OFF: [(&str, fn(&Set, &Evidence) -> Option<SearchStart>); 2] = [
+    ("screening in short windows of the records", SearchStart::in_windows),
+    ("screening from the least-squares fit", SearchStart::by_least_squares),
+];
 
 /// True if `after` explains nearly all of the excess residual that `before` leaves in the fitted runs.
 pub fn explains_fitted(before: &Set, after: &Set, evidence: &Evidence) -> bool {
@@ -85,6 +91,17 @@ impl SearchStart {
         let hypothesis = set.assembly.hypothesis();
         let from = hypothesis.place(&set.explanation.refit);
         let refit = hypothesis.fit(&from, &fidelity.coarse, BASE[0]).ok()?;
+        Some(Self { fidelity, refit })
+    }
+
+    /// For a set that leaves a large residual: where an effect is missing, a discrepancy makes a large smooth residual
+    /// more probable than a small one with sharp features, so the parameters may be far off, even though those of least
+    /// squares are not (Tuo and Wu, Annals of Statistics 43, 2015). `None` if the fit fails.
+    pub fn by_least_squares(set: &Set, steady: &Evidence) -> Option<Self> {
+        let fidelity = Fidelity::of(steady);
+        let hypothesis = set.assembly.hypothesis();
+        let from = hypothesis.place(&set.explanation.refit);
+        let refit = hypothesis.fit_by_least_squares(from, &fidelity.coarse, BASE[0]).ok()?;
         Some(Self { fidelity, refit })
     }
 }
