@@ -785,7 +785,10 @@ fn an_elasto_slip_stack_loads_as_its_elements_do_and_unloads_along_its_stiffness
 fn friction_in_a_mount_slips_at_its_levels_and_sticks_after_a_reversal() {
     let model = patched(&model("axle_a"), "bushing_friction", "powertrain_mount");
     let (f_slip, k, spread) = (90.0, 2e5, 0.6);
-    let running = Running::new(&model, &[("f_rubber", f_slip), ("k_rubber", k), ("rubber_spread", spread)]);
+    let running = Running::new(
+        &model,
+        &[("f_rubber", f_slip), ("k_rubber", k), ("rubber_spread", spread)],
+    );
     let levels = [0.6, 1.0, 1.4].map(|level| level * f_slip / 3.0);
     let rates = |loaded: f64, speed: f64| {
         let state = |name: &str| match name {
