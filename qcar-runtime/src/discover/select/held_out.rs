@@ -30,7 +30,8 @@ use crate::discover::posterior::Explanation;
 /// replaces several at its link that only make up for its form ([`explains_in_one_form`]).
 pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
     let is_judged = evidence.judging() == Role::HeldOut;
-    let unexplained = evidence.numbers.error_probability * excess(&sets[best_base(sets)].explanation, evidence);
+    let base = &sets[best_base(sets)];
+    let explains_nearly_all = |own: &Set| explained_share(base, own, evidence) >= evidence.numbers.certain();
     loop {
         let set = &sets[best];
         let predicts_better = |part: &Set| predicts_better(set, part, evidence);
@@ -46,15 +47,13 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
                 true => changes_little() || !predicts_better(part),
                 false => predicts_certainly_worse(set, part, evidence),
             };
-            let explains = || excess(&part.explanation, evidence) <= unexplained;
             is_judged && fails()
                 || set.adds_effect_at_bound(part, evidence)
-                || set.adds_undetermined_effect(part) && explains()
+                || set.adds_undetermined_effect(part) && explains_nearly_all(part)
                 || rests_on_passages(set, part, evidence)
         };
         let is_simpler = |other: &Set| {
-            let explains = is_judged && excess(&other.explanation, evidence) <= unexplained;
-            explains && !other.names().is_empty() && !predicts_better(other)
+            is_judged && !other.names().is_empty() && explains_nearly_all(other) && !predicts_better(other)
         };
         let is_enough = |other: &Set| match is_part(other, set) {
             true => is_part_enough(other),
@@ -63,10 +62,7 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
         let replaces =
             |&other: &usize| is_enough(&sets[other]) || explains_in_one_form(&sets[other], set, sets, evidence);
         let is_less = |other: &usize| sets[*other].names().len() < set.names().len();
-        let is_at_bound = |other: &Set| {
-            let explains = || excess(&other.explanation, evidence) <= unexplained;
-            other.has_magnitude_at_bound(&explains)
-        };
+        let is_at_bound = |other: &Set| other.has_magnitude_at_bound(&|| explains_nearly_all(other));
         let is_answer = |other: &usize| is_less(other) && !is_at_bound(&sets[*other]);
         let mut parts = most_probable_first(sets, (0..sets.len()).filter(is_answer));
         let mut known = HashSet::new();
