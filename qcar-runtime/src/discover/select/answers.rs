@@ -105,7 +105,7 @@ impl<'a> Supported<'a> {
 /// effects to another member.
 ///
 /// It is the base model alone if the probability of the base model exceeds the accepted probability of error. It also
-/// is if dismissed names are more probable than all others, since something else is then missing; except if the
+/// is if dismissed names are certainly more probable than all others, since something else is then missing; except if the
 /// held-out runs refute all of these names in favour of the most probable ones that are not dismissed.
 pub fn credible(sets: &[Set], answers: &[Answer], evidence: &Evidence) -> Vec<usize> {
     let numbers = &evidence.numbers;
@@ -120,7 +120,11 @@ pub fn credible(sets: &[Set], answers: &[Answer], evidence: &Evidence) -> Vec<us
     let base = best_base(sets);
     let is_refuted =
         |own: &Answer| most_probable.is_some_and(|by| is_refuted(&sets[own.set], &sets[by.set], &sets[base], evidence));
-    let mut before = answers.iter().take_while(|own| own.dismissed);
+    let is_certain = |own: &&Answer| {
+        let possible = most_probable.map_or(0.0, |possible| possible.probability);
+        own.probability > numbers.odds_of_certain() * possible
+    };
+    let mut before = answers.iter().take_while(|own| own.dismissed).filter(is_certain);
     let all: f64 = possible.clone().map(|own| own.probability).sum();
     // Named answers may be so improbable that their probability is no positive number.
     if none > numbers.error_probability || !before.all(is_refuted) || all <= 0.0 {

@@ -26,8 +26,9 @@ use crate::discover::posterior::Explanation;
 /// same effects can explain.
 ///
 /// Fewer effects that are no part of the set replace it if they explain nearly all of the residual and predict the
-/// held-out runs at least as well: several effects can imitate a law whose form is a little different. One effect also
-/// replaces several at its link that only make up for its form ([`explains_in_one_form`]).
+/// held-out runs at least as well, by the score or by the residual that they leave: several effects can imitate a law
+/// whose form is a little different. One effect also replaces several at its link that only make up for its form
+/// ([`explains_in_one_form`]).
 pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
     let is_judged = evidence.judging() == Role::HeldOut;
     let base = &sets[best_base(sets)];
@@ -52,8 +53,10 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
                 || set.adds_undetermined_effect(part) && explains_nearly_all(part)
                 || rests_on_passages(set, part, evidence)
         };
+        let leaves_less = |other: &Set| excess(&other.explanation, evidence) <= excess(&set.explanation, evidence);
         let is_simpler = |other: &Set| {
-            is_judged && !other.names().is_empty() && explains_nearly_all(other) && !predicts_better(other)
+            let is_as_good = || !predicts_better(other) || leaves_less(other);
+            is_judged && !other.names().is_empty() && explains_nearly_all(other) && is_as_good()
         };
         let is_enough = |other: &Set| match is_part(other, set) {
             true => is_part_enough(other),
