@@ -105,8 +105,8 @@ impl<'a> Supported<'a> {
 /// effects to another member.
 ///
 /// It is the base model alone if the probability of the base model exceeds the accepted probability of error. It also
-/// is if dismissed names are certainly more probable than all others, since something else is then missing; except if the
-/// held-out runs refute all of these names in favour of the most probable ones that are not dismissed.
+/// is if dismissed names are certainly more probable than all others, since something else is then missing; except if
+/// the held-out runs refute all of these names in favour of the most probable ones that are not dismissed.
 pub fn credible(sets: &[Set], answers: &[Answer], evidence: &Evidence) -> Vec<usize> {
     let numbers = &evidence.numbers;
     let is_named = |own: &&Answer| !sets[own.set].names().is_empty();

@@ -47,8 +47,12 @@ pub fn extensions(set: &Set, lead: f64, evidence: &Evidence, progress: Progress<
     sets
 }
 
-/// Further starts of the search from a set that leaves a large residual as long as no extension explains nearly all of it.
-const FAR_OFF: [(&str, fn(&Set, &Evidence) -> Option<SearchStart>); 2] = [
+/// Makes a start of a search from a set; `None` if there is none of this kind.
+type MakeStart = fn(&Set, &Evidence) -> Option<SearchStart>;
+
+/// Further starts of the search from a set that leaves a large residual, as long as no extension explains nearly all of
+/// it.
+const FAR_OFF: [(&str, MakeStart); 2] = [
     ("screening in short windows of the records", SearchStart::in_windows),
     ("screening from the least-squares fit", SearchStart::by_least_squares),
 ];
