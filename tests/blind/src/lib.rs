@@ -103,7 +103,8 @@ impl Order {
 /// Writes the campaign to a folder.
 ///
 /// # Errors
-/// An axle that does not exist, or a folder that cannot be written to.
+/// An axle that does not exist, a law at a place where the simulator does not have it, or a folder that cannot be
+/// written to.
 pub fn make(order: Order, folder: &Path) -> Result<(), String> {
     let (plan, axle, _) = planned(order, folder)?;
     campaign::write(&plan, &axle, folder).map_err(|e| format!("{}: {e}", folder.display()))
@@ -113,7 +114,7 @@ pub fn make(order: Order, folder: &Path) -> Result<(), String> {
 /// fitted runs, in units of the sensors' noise, by the equations of this simulator.
 ///
 /// # Errors
-/// An axle that does not exist.
+/// An axle that does not exist, or a law at a place where the simulator does not have it.
 pub fn strength(order: Order) -> Result<f64, String> {
     let (plan, axle, known) = planned(order, Path::new("campaign"))?;
     Ok(separable::strength(&plan, &axle, &known))
@@ -121,6 +122,11 @@ pub fn strength(order: Order) -> Result<f64, String> {
 
 /// The plan, the real axle, and the axle as the engineer knows it.
 fn planned(order: Order, folder: &Path) -> Result<(campaign::Plan, Axle, Axle), String> {
+    for Hidden { name, at, .. } in &order.effects {
+        if let Some(place) = matrix::only_place(name).filter(|place| place != at) {
+            return Err(format!("{name} at {at}: the simulator has this law only at {place}"));
+        }
+    }
     let known = known(&order.axle)?;
     let real = real(known, &order.effects);
     let axle = with_parts(Axle::draw(real, order.seed), &order.effects);

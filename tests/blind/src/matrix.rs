@@ -3,7 +3,7 @@
 mod entries;
 mod other_laws;
 
-pub use other_laws::family;
+pub use other_laws::{family, only_place};
 
 use crate::Order;
 use crate::hardware::Flaw;

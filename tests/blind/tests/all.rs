@@ -3,5 +3,6 @@
 mod answers;
 mod finite;
 mod flaws;
+mod refused;
 mod support;
 mod unchanged;

@@ -122,6 +122,12 @@ pub const OTHER_LAWS: [(Entry, &str); 14] = [
     ),
 ];
 
+/// The one place where the simulator has a law of another form; `None` for all other effects.
+pub fn only_place(name: &str) -> Option<&'static str> {
+    let own = OTHER_LAWS.iter().find(|(entry, _)| entry.name == name);
+    own.map(|(entry, _)| entry.at)
+}
+
 /// The names, separated by `|`, that count as right for a law; a law of the catalogue counts as itself.
 pub fn family(name: &str) -> &str {
     let own = OTHER_LAWS.iter().find(|(entry, _)| entry.name == name);
