@@ -122,9 +122,14 @@ impl<'m> Periodic<'m> {
         self.drive(balance, drive);
         let (x, converged) = balance.solve(start.unwrap_or(&rest));
         if converged {
-            (x, converged)
-        } else {
-            self.climb(balance, drive, &rest)
+            return (x, true);
+        }
+        match self.climb(balance, drive, rest) {
+            Some(x) => (x, true),
+            None => {
+                self.drive(balance, drive);
+                (x, false)
+            }
         }
     }
 
@@ -150,11 +155,11 @@ impl<'m> Periodic<'m> {
     }
 
     /// The responses to those drives whose positions are in `of`, in ascending order, of drives of increasing frequency.
-    /// The search for each drive starts from the response at the next higher frequency, of which one lies halfway between
-    /// each two of these.
+    /// The search for each drive starts from the response at the next higher frequency.
     ///
     /// At high frequencies masses hardly move and laws are nearly linear, so the search converges there and continues
-    /// downwards. From rest, it would often fail at low frequencies.
+    /// downwards. From rest, it would often fail at low frequencies. Further drives between them would make it converge
+    /// no more often.
     pub fn walk(
         &self,
         p: &[f64],
@@ -165,32 +170,28 @@ impl<'m> Periodic<'m> {
     ) -> Vec<Cycle> {
         let (mut balance, outputs) = (self.balance(p), each_once(outputs));
         let mut cycles: Vec<Cycle> = Vec::with_capacity(of.len());
-        let mut last: Option<Vec<f64>> = None;
-        for place in stops(of).into_iter().rev() {
-            let found = self.settled(&mut balance, &drives[place], last.as_deref());
-            last = Some(found.0.clone());
-            if of.contains(&place) {
-                cycles.push(self.response(&mut balance, found, &outputs, groups));
-            }
+        for &place in of.iter().rev() {
+            let start = cycles.last().map(|last| last.coefficients.as_slice());
+            let found = self.settled(&mut balance, &drives[place], start);
+            cycles.push(self.response(&mut balance, found, &outputs, groups));
         }
         cycles.reverse();
         cycles
     }
 
-    /// Increases the amplitude from a small one, at which every smooth law is linear, to the required one.
-    fn climb(&self, balance: &mut Balance, drive: &Drive, rest: &[f64]) -> (Vec<f64>, bool) {
+    /// Increases the amplitude from a small one, at which every smooth law is linear, to the required one. `None` if the
+    /// search fails at one of the amplitudes: at larger ones it then fails too, with few exceptions.
+    fn climb(&self, balance: &mut Balance, drive: &Drive, rest: Vec<f64>) -> Option<Vec<f64>> {
         const STEPS: i32 = 12;
         const RATIO: f64 = 2.0;
-        let mut x = rest.to_vec();
-        let mut converged = false;
-        for step in (0..=STEPS).rev() {
+        (0..=STEPS).rev().try_fold(rest, |mut x, step| {
             let amplitude = drive.amplitude * RATIO.powi(-step);
             // To first order, the response grows with the amplitude.
             x.iter_mut().for_each(|x| *x *= RATIO);
             self.drive(balance, &Drive { amplitude, ..*drive });
-            (x, converged) = balance.solve(&x);
-        }
-        (x, converged)
+            let (x, converged) = balance.solve(&x);
+            converged.then_some(x)
+        })
     }
 
     fn balance(&self, p: &[f64]) -> Balance<'_> {
@@ -219,13 +220,6 @@ impl<'m> Periodic<'m> {
             _ => 0.0,
         })
     }
-}
-
-/// These positions, and one halfway between each two that are not neighbours: a search from a nearer response needs
-/// fewer steps and converges more often. One between them is a choice.
-fn stops(of: &BTreeSet<usize>) -> BTreeSet<usize> {
-    let halfway = of.iter().zip(of.iter().skip(1)).map(|(low, high)| (low + high) / 2);
-    of.iter().copied().chain(halfway).collect()
 }
 
 /// The requested outputs in ascending order, without duplicates.
