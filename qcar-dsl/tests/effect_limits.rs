@@ -412,6 +412,44 @@ fn an_exponential_bushing_has_a_rate_that_grows_with_the_hyperbolic_cosine() {
     }
 }
 
+/// The force is `k s (1 + (s / s0)^2)`: twice `k s0` at `s0`, and ten times at twice that travel.
+#[test]
+fn a_mass_on_rubber_feels_twice_the_force_at_the_travel_of_the_rubber() {
+    let (mass, stiffness, s0) = (8.0, 2e5, 1.5e-3);
+    let cases = [
+        (
+            ("secondary_resonator", "hardening", "wheel"),
+            ["m_resonator", "k_resonator", "c_resonator", "s_resonator"],
+            "resonator",
+        ),
+        (
+            ("suspended_mass", "on_stiffening_mounts", "body"),
+            ["m_pwt", "k_pwt_z", "c_pwt_z", "s_pwt"],
+            "pwt",
+        ),
+    ];
+    for ((effect, form, place), names, part) in cases {
+        let model = in_form(&model("axle_b_rigid_tm"), effect, form, place);
+        let values = [mass, stiffness, 0.0, s0];
+        let known: Vec<(&str, f64)> = names.into_iter().zip(values).collect();
+        let running = Running::new(&model, &known);
+        let force = |z: f64| {
+            -mass
+                * running.rate(&format!("vz_{part}"), &|name| {
+                    if name == format!("z_{part}") { z } else { 0.0 }
+                })
+        };
+        for (travel, times) in [(1e-3 * s0, 1e-3), (s0, 2.0), (-s0, -2.0), (2.0 * s0, 10.0)] {
+            let expected = times * stiffness * s0;
+            assert!(
+                (force(travel) / expected - 1.0).abs() < 2e-6,
+                "{effect} at {travel} m: {}, not {expected}",
+                force(travel)
+            );
+        }
+    }
+}
+
 #[test]
 fn a_digressive_damper_begins_with_c0_and_tends_to_the_force_of_v0_at_the_wheel() {
     for (form, share_at_v0) in [("gradual", 0.5), ("blow_off", 1f64.tanh())] {

@@ -579,7 +579,7 @@ fn an_effect_says_where_the_sensors_of_a_mass_stand() {
 fn an_effect_is_sized_by_known_values_and_the_model_takes_them_as_defaults() {
     let known = |name: &str| (name == "m_body").then_some(5.0);
     let places = effect("suspended_mass").candidates(&model("one_mass"), &known);
-    let [own, _] = places.as_slice() else {
+    let [own, ..] = places.as_slice() else {
         panic!("{} places", places.len())
     };
     let text = own.text("");
@@ -768,17 +768,29 @@ fn without_a_road_a_mass_may_hang_on_any_other() {
         ("middle", "vertical"),
         ("middle", "soft_fore_and_aft"),
         ("middle", "attached"),
+        ("middle", "hardening"),
+        ("middle", "attached_hardening"),
         ("top", "vertical"),
         ("top", "soft_fore_and_aft"),
         ("top", "attached"),
+        ("top", "hardening"),
+        ("top", "attached_hardening"),
     ];
-    let on_the_body = [("low", "within_body"), ("low", "attached")];
+    let on_the_body = [
+        ("low", "within_body"),
+        ("low", "attached"),
+        ("low", "on_stiffening_mounts"),
+    ];
     // What an effect does along x is in addition to what it does along the axle's own direction.
     for model in [&stack, &lying] {
         assert_eq!(forms("secondary_resonator", model), listed(&elsewhere));
         assert_eq!(forms("suspended_mass", model), listed(&on_the_body));
     }
-    let on_a_car = [("wheel", "vertical"), ("wheel", "soft_fore_and_aft")];
+    let on_a_car = [
+        ("wheel", "vertical"),
+        ("wheel", "soft_fore_and_aft"),
+        ("wheel", "hardening"),
+    ];
     assert_eq!(forms("secondary_resonator", &model("quarter_car")), listed(&on_a_car));
 }
 

@@ -77,11 +77,13 @@ pub struct Laws {
     pub free_play: Option<f64>,
     pub inertance: Option<f64>,
     pub resonator: Option<Resonator>,
+    /// A law in another form than the catalogue's: the resonator's spring also has a cubic term, N/m³.
+    pub resonator_cubic: Option<f64>,
     /// Outside the catalogue: the damper fades by this share from the start of a run to its end.
     pub fade: Option<f64>,
     /// Outside the catalogue: an additional damper force c₂ v|v|, N s²/m².
     pub quadratic_damping: Option<f64>,
-    /// Outside the catalogue: the top mount stiffens with the square of its extension, N/m³.
+    /// A law in another form than the catalogue's: the top mount stiffens with the square of its extension, N/m³.
     pub cubic_top_mount: Option<f64>,
     /// A law in another form than the catalogue's.
     pub other: Option<Other>,
@@ -185,6 +187,10 @@ impl Laws {
             ("free_play", _) => self.free_play = Some(effect.get("gap")),
             ("inerter", _) => self.inertance = Some(effect.get("inertance")),
             ("secondary_resonator", _) => self.resonator = Some(Resonator::from(effect)),
+            ("cubic_resonator", _) => {
+                self.resonator = Some(Resonator::from(effect));
+                self.resonator_cubic = Some(effect.get("k3"));
+            }
             ("bouc_wen_hysteresis", _) => self.bouc_wen = Some(BoucWen::from(effect)),
             ("segmented_polynomial_damper", _) => self.segmented = Some(Segmented::from(effect)),
             ("series_compliance", _) => self.k_series = Some(effect.get("k_series")),

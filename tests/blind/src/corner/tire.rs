@@ -12,7 +12,9 @@ impl Corner<'_> {
             f[BELT] += force;
         }
         if let Some(r) = self.laws.resonator {
-            let force = r.k_resonator * (y[RESONATOR] - y[WHEEL]) + r.c_resonator * (v[RESONATOR] - v[WHEEL]);
+            let (s, rate) = (y[RESONATOR] - y[WHEEL], v[RESONATOR] - v[WHEEL]);
+            let cubic = self.laws.resonator_cubic.unwrap_or(0.0) * s.powi(3);
+            let force = r.k_resonator * s + cubic + r.c_resonator * rate;
             f[RESONATOR] -= force;
             f[WHEEL] += force;
         }

@@ -308,9 +308,8 @@ pub const SINGLES: [Entry; 32] = [
 ];
 
 /// Effects that are not in the catalogue.
-pub const OUTSIDE: [Entry; 3] = [
+pub const OUTSIDE: [Entry; 2] = [
     entry("damper_fade", "damper", "c", &[("share", [0.1, 0.2, 0.4])]),
-    entry("cubic_top_mount", "top_mount", "a", &[("k3", [3e11, 1e12, 4e12])]),
     entry("sensor_saturation", "body", "c", &[("soft_limit", [20.0, 10.0, 5.0])]),
 ];
 

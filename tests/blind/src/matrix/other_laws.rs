@@ -3,7 +3,7 @@
 use super::entries::{Entry, entry};
 
 /// The laws, each with the names that count as right at the same place.
-pub const OTHER_LAWS: [(Entry, &str); 14] = [
+pub const OTHER_LAWS: [(Entry, &str); 16] = [
     (
         entry(
             "lugre_friction",
@@ -119,6 +119,24 @@ pub const OTHER_LAWS: [(Entry, &str); 14] = [
             &[("f_slip", [20.0, 50.0, 120.0]), ("k_stick", [60e3, 150e3, 300e3])],
         ),
         "bushing_friction",
+    ),
+    (
+        entry("cubic_top_mount", "top_mount", "a", &[("k3", [3e11, 1e12, 4e12])]),
+        "bushing_saturation",
+    ),
+    (
+        entry(
+            "cubic_resonator",
+            "wheel",
+            "c",
+            &[
+                ("m_resonator", [3.0, 4.0, 6.0]),
+                ("k_resonator", [20e3, 30e3, 50e3]),
+                ("c_resonator", [25.0, 35.0, 50.0]),
+                ("k3", [2e9, 1e10, 3e10]),
+            ],
+        ),
+        "secondary_resonator",
     ),
 ];
 
