@@ -37,9 +37,8 @@ const RESTORING: f64 = 1e-6;
 /// A matrix is used again if the next step with it is shorter than this fraction of the last full step: a new
 /// factorisation costs as much as tens of residuals.
 const REUSE: f64 = 0.2;
-/// Smallest fraction of a Newton step that is tried. At a kink of a law, smaller ones are not monotonic either, and the
-/// search hardly moves.
-const SHORTEST: f64 = 0.1;
+/// Smallest fraction of a Newton step that is tried.
+const SHORTEST: f64 = 1e-3;
 
 impl<'a> Balance<'a> {
     /// A balance without a drive.
