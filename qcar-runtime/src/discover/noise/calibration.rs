@@ -56,12 +56,6 @@ impl AccuracyClass {
         self.shelf() * (SHELVES as f64).sqrt()
     }
 
-    /// True if sensors of this class are less accurate by more than one step of the grid. Neighbouring classes hardly differ
-    /// in evidence, so that a fit may end in either of them.
-    pub fn is_clearly_worse_than(self, other: Self) -> bool {
-        self.0 > other.0 + 1
-    }
-
     /// Negative log prior of the class, up to a constant. The prior is exponential in the error beyond that of the data
     /// sheets, with the latter as its mean.
     pub fn cost(self) -> f64 {

@@ -185,11 +185,11 @@ impl Set {
         })
     }
 
-    /// Explanation by this set with the sensor errors of another set, if this set's own fit estimates clearly less accurate
+    /// Explanation by this set with the sensor errors of another set, if this set's own fit estimates less accurate
     /// sensors than the other's. A set that lacks an effect attributes part of its residual to the sensors, and then
     /// the effect would seem to explain too little. It is the set's own explanation if the fit fails.
     pub fn with_sensors_of(&self, other: &Set, evidence: &Evidence) -> Cow<'_, Explanation> {
-        if !self.accuracy().is_clearly_worse_than(other.accuracy()) {
+        if self.accuracy() <= other.accuracy() {
             return Cow::Borrowed(&self.explanation);
         }
         let sensors = Sensors::of(&other.explanation.refit);
