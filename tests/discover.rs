@@ -434,7 +434,7 @@ fn a_second_effect_is_found_where_the_parameters_beside_the_first_are_far_off() 
 #[test]
 #[ignore = "a whole search; .ci/run runs it"]
 fn the_form_of_an_effect_is_chosen_again_beside_another() {
-    let resonator = [("m_resonator", 5.2), ("k_resonator", 65e3), ("c_resonator", 35.5)];
+    let resonator = [("m_resonator", 5.2), ("k_resonator", 65e3), ("zeta_resonator", 0.0305)];
     let other_axle = [
         ("wheelbase", 2.7),
         ("dynamic_index", 0.63),
@@ -745,7 +745,7 @@ fn a_resonator_on_a_hardening_spring_is_named() {
     let truth = [
         ("m_resonator", 5.0),
         ("k_resonator", 22e3),
-        ("c_resonator", 35.0),
+        ("zeta_resonator", 0.0528),
         ("k3", 3e9),
     ];
     let answer = of_short_sweeps("c", 4712, Hidden::new("cubic_resonator", "wheel", &truth));

@@ -412,6 +412,22 @@ fn an_exponential_bushing_has_a_rate_that_grows_with_the_hyperbolic_cosine() {
     }
 }
 
+/// A free swing obeys `a = -2 zeta omega v`, with `omega = sqrt(k / m)`, at zero extension.
+#[test]
+fn a_resonator_has_the_damping_ratio_that_it_is_given() {
+    let (mass, stiffness, ratio) = (4.0, 1e5, 0.3);
+    let known = [("m_resonator", mass), ("k_resonator", stiffness), ("zeta_resonator", ratio)];
+    for form in ["vertical", "hardening"] {
+        let model = in_form(&model("axle_c"), "secondary_resonator", form, "wheel");
+        let rate = Running::new(&model, &known).rate("vz_resonator", &|name| match name {
+            "vz_resonator" => 0.01,
+            _ => 0.0,
+        });
+        let expected = -2.0 * ratio * f64::sqrt(stiffness / mass) * 0.01;
+        assert!((rate / expected - 1.0).abs() < 1e-9, "{form}: {rate}, not {expected}");
+    }
+}
+
 /// The force is `k s (1 + (s / s0)^2)`: twice `k s0` at `s0`, and ten times at twice that travel.
 #[test]
 fn a_mass_on_rubber_feels_twice_the_force_at_the_travel_of_the_rubber() {
@@ -419,7 +435,7 @@ fn a_mass_on_rubber_feels_twice_the_force_at_the_travel_of_the_rubber() {
     let cases = [
         (
             ("secondary_resonator", "hardening", "wheel"),
-            ["m_resonator", "k_resonator", "c_resonator", "s_resonator"],
+            ["m_resonator", "k_resonator", "zeta_resonator", "s_resonator"],
             "resonator",
         ),
         (

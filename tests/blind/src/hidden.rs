@@ -136,7 +136,14 @@ law!(/// A rigid ring between wheel and road.
 law!(/// A bushing that stiffens beyond its linear travel.
     Saturation { linear_travel, rate_increase_at_twice_travel });
 law!(/// A mass on a spring and damper on the wheel.
-    Resonator { m_resonator, k_resonator, c_resonator });
+    Resonator { m_resonator, k_resonator, zeta_resonator });
+
+impl Resonator {
+    /// Damping of its mount, N s/m.
+    pub fn damping(&self) -> f64 {
+        2.0 * self.zeta_resonator * (self.k_resonator * self.m_resonator).sqrt()
+    }
+}
 
 impl Laws {
     /// Mass that moves with the rim, kg: the wheel's mass less its belt and its resonator.

@@ -14,7 +14,7 @@ impl Corner<'_> {
         if let Some(r) = self.laws.resonator {
             let (s, rate) = (y[RESONATOR] - y[WHEEL], v[RESONATOR] - v[WHEEL]);
             let cubic = self.laws.resonator_cubic.unwrap_or(0.0) * s.powi(3);
-            let force = r.k_resonator * s + cubic + r.c_resonator * rate;
+            let force = r.k_resonator * s + cubic + r.damping() * rate;
             f[RESONATOR] -= force;
             f[WHEEL] += force;
         }

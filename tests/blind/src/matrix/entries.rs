@@ -273,7 +273,7 @@ pub const SINGLES: [Entry; 32] = [
         &[
             ("m_resonator", [2.0, 4.0, 7.0]),
             ("k_resonator", [20e3, 50e3, 80e3]),
-            ("c_resonator", [20.0, 40.0, 60.0]),
+            ("zeta_resonator", [0.05, 0.045, 0.04]),
         ],
     ),
     entry(

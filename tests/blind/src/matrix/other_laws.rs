@@ -132,7 +132,7 @@ pub const OTHER_LAWS: [(Entry, &str); 16] = [
             &[
                 ("m_resonator", [3.0, 4.0, 6.0]),
                 ("k_resonator", [20e3, 30e3, 50e3]),
-                ("c_resonator", [25.0, 35.0, 50.0]),
+                ("zeta_resonator", [0.051, 0.0505, 0.0457]),
                 ("k3", [2e9, 1e10, 3e10]),
             ],
         ),
