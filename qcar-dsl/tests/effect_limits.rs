@@ -416,7 +416,12 @@ fn an_exponential_bushing_has_a_rate_that_grows_with_the_hyperbolic_cosine() {
 #[test]
 fn a_resonator_has_the_damping_ratio_that_it_is_given() {
     let (mass, stiffness, ratio) = (4.0, 1e5, 0.3);
-    let known = [("m_resonator", mass), ("k_resonator", stiffness), ("zeta_resonator", ratio)];
+    let known = [
+        ("m_resonator", mass),
+        ("k_resonator", stiffness),
+        ("zeta_resonator", ratio),
+        ("s_resonator", 1e-3),
+    ];
     for form in ["vertical", "hardening"] {
         let model = in_form(&model("axle_c"), "secondary_resonator", form, "wheel");
         let rate = Running::new(&model, &known).rate("vz_resonator", &|name| match name {
