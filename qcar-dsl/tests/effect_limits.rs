@@ -437,20 +437,48 @@ fn a_resonator_has_the_damping_ratio_that_it_is_given() {
 #[test]
 fn a_mass_on_rubber_feels_twice_the_force_at_the_travel_of_the_rubber() {
     let (mass, stiffness, s0) = (8.0, 2e5, 1.5e-3);
+    let machine = "axle machine {
+        \"Two masses on a shaker\"
+        param m_body: kg = 2 in 0.1..10 \"Mass\";
+        param k_body: N/m = 50 in 1..1e6 \"Stiffness\";
+        direction z {
+            motion shaker;
+            mass low = 3 * m_body;
+            mass part = m_body;
+            link first: low - shaker { spring k_body; }
+            link second: part - low { spring k_body; }
+            output part.acceleration;
+        }
+    }";
+    let source = Source {
+        name: "machine.axle".into(),
+        text: machine.into(),
+    };
+    let none = |_: &str, path: &str| Err(format!("no {path}"));
+    let machine = check_text(source, &none).unwrap_or_else(|report| panic!("{report}"));
+    let car = model("axle_c");
     let cases = [
         (
+            &machine,
+            ("secondary_resonator", "attached_hardening", "part"),
+            ["m_resonator", "k_resonator", "zeta_resonator", "s_resonator"],
+            "resonator",
+        ),
+        (
+            &car,
             ("secondary_resonator", "hardening", "wheel"),
             ["m_resonator", "k_resonator", "zeta_resonator", "s_resonator"],
             "resonator",
         ),
         (
+            &car,
             ("suspended_mass", "on_stiffening_mounts", "body"),
             ["m_pwt", "k_pwt_z", "c_pwt_z", "s_pwt"],
             "pwt",
         ),
     ];
-    for ((effect, form, place), names, part) in cases {
-        let model = in_form(&model("axle_c"), effect, form, place);
+    for (base, (effect, form, place), names, part) in cases {
+        let model = in_form(base, effect, form, place);
         let values = [mass, stiffness, 0.0, s0];
         let known: Vec<(&str, f64)> = names.into_iter().zip(values).collect();
         let running = Running::new(&model, &known);
@@ -464,7 +492,7 @@ fn a_mass_on_rubber_feels_twice_the_force_at_the_travel_of_the_rubber() {
             let expected = times * stiffness * s0;
             assert!(
                 (force(travel) / expected - 1.0).abs() < 2e-6,
-                "{effect} at {travel} m: {}, not {expected}",
+                "{effect} {form} at {travel} m: {}, not {expected}",
                 force(travel)
             );
         }
