@@ -1,7 +1,7 @@
 //! Harmonic balance against closed forms, time integration and differences.
 
 use qcar_runtime::model::Model;
-use qcar_runtime::response::periodic::{Drive, Periodic};
+use qcar_runtime::response::periodic::{Course, Drive, Periodic};
 use qcar_runtime::simulate::{Accuracy, Between, Reading, Recorded, replay};
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
@@ -22,9 +22,15 @@ fn drive(frequency: f64, velocity: f64) -> Drive {
     }
 }
 
-/// Fourier coefficients of the accelerations over the last of many periods of classical Runge-Kutta, relative in phase
-/// to the pad's acceleration `A cos θ`.
+/// Fourier coefficients of the accelerations over the last of many periods of classical Runge-Kutta from rest, relative
+/// in phase to the pad's acceleration `A cos θ`.
 fn integrated(model: &Strut, p: &[f64], drive: &Drive, periods: usize) -> Vec<[(f64, f64); 3]> {
+    let mut x = vec![0.0; model.about().states.len()];
+    continued(model, p, drive, periods, &mut x)
+}
+
+/// The same from the states `x`, which are those at the end after it.
+fn continued(model: &Strut, p: &[f64], drive: &Drive, periods: usize, x: &mut Vec<f64>) -> Vec<[(f64, f64); 3]> {
     let omega = TAU * drive.frequency;
     let steps = (1.0 / (drive.frequency * 2e-4)).ceil() as usize;
     let h = 1.0 / (drive.frequency * steps as f64);
@@ -39,13 +45,13 @@ fn integrated(model: &Strut, p: &[f64], drive: &Drive, periods: usize) -> Vec<[(
         dx
     };
     let add = |x: &[f64], k: &[f64], h: f64| -> Vec<f64> { x.iter().zip(k).map(|(x, k)| x + h * k).collect() };
-    let mut x = vec![0.0; n];
-    let mut sums = vec![[(0.0, 0.0); 3]; 3];
+    let outputs = model.about().outputs.len();
+    let mut sums = vec![[(0.0, 0.0); 3]; outputs];
     for step in 0..periods * steps {
         let t = step as f64 * h;
         if step >= (periods - 1) * steps {
-            let mut y = vec![0.0; 3];
-            model.outputs(p, &x, &pad(t), &mut y);
+            let mut y = vec![0.0; outputs];
+            model.outputs(p, x, &pad(t), &mut y);
             for (sums, y) in sums.iter_mut().zip(y) {
                 for (order, sum) in sums.iter_mut().enumerate() {
                     let angle = omega * t * (order + 1) as f64;
@@ -54,14 +60,14 @@ fn integrated(model: &Strut, p: &[f64], drive: &Drive, periods: usize) -> Vec<[(
                 }
             }
         }
-        let k1 = f(t, &x);
-        let k2 = f(t + 0.5 * h, &add(&x, &k1, 0.5 * h));
-        let k3 = f(t + 0.5 * h, &add(&x, &k2, 0.5 * h));
-        let k4 = f(t + h, &add(&x, &k3, h));
+        let k1 = f(t, x);
+        let k2 = f(t + 0.5 * h, &add(x, &k1, 0.5 * h));
+        let k3 = f(t + 0.5 * h, &add(x, &k2, 0.5 * h));
+        let k4 = f(t + h, &add(x, &k3, h));
         let slope: Vec<f64> = (0..n)
             .map(|i| (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]) / 6.0)
             .collect();
-        x = add(&x, &slope, h);
+        *x = add(x, &slope, h);
     }
     sums
 }
@@ -74,7 +80,7 @@ fn dry_friction_shows_the_harmonics_that_integration_finds() {
     let all = BTreeSet::from_iter(0..drives.len());
     for (drive, cycle) in drives
         .iter()
-        .zip(periodic.walk(&P, &drives, &all, &[0, 1], &[]))
+        .zip(periodic.walk(&P, &drives, Course::Rising, &all, &[0, 1], &[]))
         .step_by(20)
     {
         assert!(cycle.converged);
@@ -89,13 +95,66 @@ fn dry_friction_shows_the_harmonics_that_integration_finds() {
     }
 }
 
+/// A mass on mounts that stiffen with travel has two stable responses over some band. Those of integration start from the
+/// motion at the frequency before. Every third line, as in coarse data, has the same ones.
+#[test]
+fn a_rising_and_a_falling_sweep_follow_their_own_branch() {
+    let mut model = Strut::new(Parts {
+        powertrain: true,
+        friction: false,
+    });
+    (model.hardening, model.about.linear) = (9e9, false);
+    let p: Vec<f64> = P[..9].iter().copied().chain([5.0, 20e3, 19.0]).collect();
+    let drives: Vec<Drive> = (0..24).map(|k| drive(9.0 * 1.025f64.powi(k), 0.1)).collect();
+    let all = BTreeSet::from_iter(0..drives.len());
+    let (pwt, mut amplitudes) = (3, Vec::new());
+    for course in [Course::Rising, Course::Falling] {
+        let periodic = Periodic::new(&model, 0, 5);
+        let cycles = periodic.walk(&p, &drives, course, &all, &[pwt], &[]);
+        let third = BTreeSet::from_iter((2..drives.len()).step_by(3));
+        let some = periodic.walk(&p, &drives, course, &third, &[pwt], &[]);
+        for (one, &place) in some.iter().zip(&third) {
+            let (one, same) = (one.output(pwt)[1], cycles[place].output(pwt)[1]);
+            assert!(
+                (one - same).norm() < 1e-5 * same.norm(),
+                "{course:?}: {one}, not {same}"
+            );
+        }
+        let mut places: Vec<usize> = all.iter().copied().collect();
+        if course == Course::Falling {
+            places.reverse();
+        }
+        let mut x = vec![0.0; model.about().states.len()];
+        let mut off = Vec::new();
+        for place in places {
+            let (re, im) = continued(&model, &p, &drives[place], 80, &mut x)[pwt][0];
+            let found = cycles[place].output(pwt)[1];
+            off.push((found.re - re).hypot(found.im - im) / re.hypot(im));
+        }
+        // At the end of a branch, both methods leave it within a line of each other.
+        off.sort_by(f64::total_cmp);
+        assert!(off[off.len() - 2] < 5e-3, "{course:?}: {off:?}");
+        amplitudes.push(
+            cycles
+                .iter()
+                .map(|cycle| cycle.output(pwt)[1].norm())
+                .collect::<Vec<_>>(),
+        );
+    }
+    let times = amplitudes[0]
+        .iter()
+        .zip(&amplitudes[1])
+        .map(|(rising, falling)| rising / falling);
+    assert!(times.fold(0.0, f64::max) > 3.0, "{amplitudes:?}");
+}
+
 /// The steps of the search are longer, and its results the same.
 #[test]
 fn the_responses_of_some_lines_are_those_of_all() {
     let model = Strut::new(DRY);
     let periodic = Periodic::new(&model, 0, 5);
     let drives: Vec<Drive> = (0..60).map(|k| drive(1.4 * 1.05f64.powi(k), 0.1)).collect();
-    let walk = |of: BTreeSet<usize>| periodic.walk(&P, &drives, &of, &[0, 1], &[vec![0]]);
+    let walk = |of: BTreeSet<usize>| periodic.walk(&P, &drives, Course::Rising, &of, &[0, 1], &[vec![0]]);
     let (all, some) = (
         walk(BTreeSet::from_iter(0..60)),
         walk(BTreeSet::from_iter((0..60).step_by(6))),
@@ -125,7 +184,7 @@ fn a_replayed_sine_settles_to_the_cycle_of_harmonic_balance() {
     // The balance is walked to: each frequency begins with the cycle of the one before.
     let walk: Vec<Drive> = (0..21).map(|k| drive(1.4 * 1.05f64.powi(k), 0.1)).collect();
     let all = BTreeSet::from_iter(0..walk.len());
-    let cycles = Periodic::new(&model, 0, 15).walk(&P, &walk, &all, &[0, 1], &[]);
+    let cycles = Periodic::new(&model, 0, 15).walk(&P, &walk, Course::Rising, &all, &[0, 1], &[]);
     let (drive, cycle) = (walk[20], &cycles[20]);
     assert!(cycle.converged);
     let rate = drive.frequency * f64::from(per_period);

@@ -16,14 +16,14 @@ mod factors;
 // The harmonic balance at one excitation, and its solution.
 mod balance;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use nalgebra::{Complex, DMatrix};
 
 use crate::model::{InputKind, Matrix, Model, Quantity};
-use balance::Balance;
+use balance::{Balance, Found};
 use basis::Basis;
 
 /// The periodic responses of a model to one excitation.
@@ -44,6 +44,15 @@ pub struct Drive {
     pub amplitude: f64,
     /// Order of the derivative of the excitation that is measured: 2 for an acceleration.
     pub power: i32,
+}
+
+/// Which way the frequency of a sweep goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Course {
+    /// From low to high frequencies.
+    Rising,
+    /// From high to low frequencies.
+    Falling,
 }
 
 /// A periodic response.
@@ -115,29 +124,36 @@ impl<'m> Periodic<'m> {
         self.response(&mut balance, found, &each_once(outputs), groups)
     }
 
-    /// The coefficients of the states for a drive, and true if their search converged. The balance may have had another
-    /// drive before.
-    fn settled(&self, balance: &mut Balance, drive: &Drive, start: Option<&[f64]>) -> (Vec<f64>, bool) {
+    /// The states for a drive. The balance may have had another drive before.
+    fn settled(&self, balance: &mut Balance, drive: &Drive, start: Option<&[f64]>) -> Found {
         let rest = vec![0.0; self.states.len() * self.basis.terms()];
         self.drive(balance, drive);
-        let (x, converged) = balance.solve(start.unwrap_or(&rest));
-        if converged {
-            return (x, true);
+        let found = balance.solve(start.unwrap_or(&rest));
+        if found.converged {
+            return found;
         }
         match self.climb(balance, drive, rest) {
-            Some(x) => (x, true),
+            Some(coefficients) => Found {
+                coefficients,
+                converged: true,
+                is_direct: false,
+            },
             None => {
                 self.drive(balance, drive);
-                (x, false)
+                found
             }
         }
     }
 
-    /// The response with these coefficients.
+    /// The response with the states that a search has found.
     fn response(
         &self,
         balance: &mut Balance,
-        (coefficients, converged): (Vec<f64>, bool),
+        Found {
+            coefficients,
+            converged,
+            ..
+        }: Found,
         outputs: &[usize],
         groups: &[Vec<usize>],
     ) -> Cycle {
@@ -160,23 +176,84 @@ impl<'m> Periodic<'m> {
     /// At high frequencies masses hardly move and laws are nearly linear, so the search converges there and continues
     /// downwards. From rest, it would often fail at low frequencies. Further drives between them would make it converge
     /// no more often.
+    ///
+    /// Where several periodic responses exist, as of a hardening spring, those of a falling frequency are found. If
+    /// `course` is rising, those of a rising one take their place (A. H. Nayfeh and D. T. Mook, "Nonlinear
+    /// Oscillations", section 4.1).
     pub fn walk(
         &self,
         p: &[f64],
         drives: &[Drive],
+        course: Course,
         of: &BTreeSet<usize>,
         outputs: &[usize],
         groups: &[Vec<usize>],
     ) -> Vec<Cycle> {
         let (mut balance, outputs) = (self.balance(p), each_once(outputs));
-        let mut cycles: Vec<Cycle> = Vec::with_capacity(of.len());
+        let mut cycles: BTreeMap<usize, Cycle> = BTreeMap::new();
+        let mut jumps = Vec::new();
         for &place in of.iter().rev() {
-            let start = cycles.last().map(|last| last.coefficients.as_slice());
+            let above = cycles.first_key_value().map(|(_, above)| above);
+            let start = above.map(|above| above.coefficients.as_slice());
             let found = self.settled(&mut balance, &drives[place], start);
-            cycles.push(self.response(&mut balance, found, &outputs, groups));
+            if !found.is_direct && start.is_some_and(|above| self.has_jumped(&found.coefficients, above)) {
+                jumps.push(place);
+            }
+            cycles.insert(place, self.response(&mut balance, found, &outputs, groups));
         }
-        cycles.reverse();
-        cycles
+        if course == Course::Rising {
+            for &place in jumps.iter().rev() {
+                self.rise(&mut balance, drives, place, &mut cycles, (&outputs, groups));
+            }
+        }
+        cycles.into_values().collect()
+    }
+
+    /// Follows a response to higher drives as long as it exists and differs from those of a falling frequency, which it
+    /// replaces. It takes each drive in between, because a response near a resonance changes much from one to the next.
+    fn rise(
+        &self,
+        balance: &mut Balance,
+        drives: &[Drive],
+        from: usize,
+        cycles: &mut BTreeMap<usize, Cycle>,
+        (outputs, groups): (&[usize], &[Vec<usize>]),
+    ) {
+        let mut x = cycles[&from].coefficients.clone();
+        for (place, drive) in drives.iter().enumerate().skip(from + 1) {
+            self.drive(balance, drive);
+            let next = balance.solve(&x);
+            if !next.converged {
+                return;
+            }
+            x.clone_from(&next.coefficients);
+            if let Some(falling) = cycles.get_mut(&place) {
+                if falling.converged && self.is_same(&x, &falling.coefficients) {
+                    return;
+                }
+                *falling = self.response(balance, next, outputs, groups);
+            }
+        }
+    }
+
+    /// True if the amplitude of a state differs by more than a factor of two, as after a jump to another branch. The lines of a sweep are 2 to 3 % apart, and
+    /// a linear resonance does not double from one to the next unless its damping ratio is below 2 %.
+    fn has_jumped(&self, a: &[f64], b: &[f64]) -> bool {
+        let [a, b] = [a, b].map(|x| self.amplitudes(x));
+        a.zip(b).any(|(a, b)| a > 2.0 * b || b > 2.0 * a)
+    }
+
+    /// True if two responses agree to a thousandth of the amplitude of each state.
+    fn is_same(&self, a: &[f64], b: &[f64]) -> bool {
+        let difference: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
+        let differences = self.amplitudes(&difference);
+        differences.zip(self.amplitudes(b)).all(|(off, b)| off <= 1e-3 * b)
+    }
+
+    /// Largest harmonic coefficient of each state.
+    fn amplitudes<'x>(&self, x: &'x [f64]) -> impl Iterator<Item = f64> + use<'x, 'm> {
+        let largest = |series: &[f64]| series[1..].iter().fold(0.0_f64, |most, c| most.max(c.abs()));
+        x.chunks(self.basis.terms()).map(largest)
     }
 
     /// Increases the amplitude from a small one, at which every smooth law is linear, to the required one. `None` if the
@@ -189,8 +266,8 @@ impl<'m> Periodic<'m> {
             // To first order, the response grows with the amplitude.
             x.iter_mut().for_each(|x| *x *= RATIO);
             self.drive(balance, &Drive { amplitude, ..*drive });
-            let (x, converged) = balance.solve(&x);
-            converged.then_some(x)
+            let found = balance.solve(&x);
+            found.converged.then_some(found.coefficients)
         })
     }
 

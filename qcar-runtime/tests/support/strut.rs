@@ -23,6 +23,8 @@ pub struct Strut {
     parts: Parts,
     /// Factor on its Jacobian; 1 is right.
     pub jacobian_factor: f64,
+    /// Cubic stiffness of the powertrain's mounts, N/m³.
+    pub hardening: f64,
 }
 
 const BASE: [(&str, &str); 9] = [
@@ -46,6 +48,7 @@ impl Strut {
             about: about(parts),
             parts,
             jacobian_factor: 1.0,
+            hardening: 0.0,
         }
     }
 
@@ -78,7 +81,8 @@ impl Strut {
         }
         let mut force = vec![-spring - top, spring + damper - tire + u[2], top - damper];
         if self.parts.powertrain {
-            let mount = extra[1] * (z[pwt] - z[body]) + extra[2] * (v[pwt] - v[body]);
+            let (s, rate) = (z[pwt] - z[body], v[pwt] - v[body]);
+            let mount = extra[1] * s + self.hardening * s.powi(3) + extra[2] * rate;
             force[body] += mount;
             force.push(-mount);
         }

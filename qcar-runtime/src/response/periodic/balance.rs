@@ -27,6 +27,14 @@ pub struct Balance<'a> {
     linear_states: Option<Rc<LinearStates>>,
 }
 
+/// What a search has found.
+pub struct Found {
+    pub coefficients: Vec<f64>,
+    pub converged: bool,
+    /// True if every Newton step was a full one that shortened the next.
+    pub is_direct: bool,
+}
+
 /// Largest number of Newton steps.
 const ITERATIONS: usize = 30;
 /// A step this small relative to the largest coefficient of its state ends the search.
@@ -64,17 +72,23 @@ impl<'a> Balance<'a> {
         self.linear_states = None;
     }
 
-    /// Searches from `start`. Returns the coefficients, and true if they converged.
+    /// Searches from `start`.
     ///
     /// A step is shortened until the next one, with the same matrix, would be shorter (P. Deuflhard, "Newton Methods
     /// for Nonlinear Problems", section 3.3): it needs no scale of the residuals, whose units differ.
-    pub fn solve(&mut self, start: &[f64]) -> (Vec<f64>, bool) {
+    pub fn solve(&mut self, start: &[f64]) -> Found {
         let mut x = DVector::from_column_slice(start);
+        let mut is_direct = true;
+        let found = |x: &DVector<f64>, converged: bool, is_direct: bool| Found {
+            coefficients: x.as_slice().to_vec(),
+            converged,
+            is_direct,
+        };
         let mut residual = self.residual(&x);
         let mut kept = None;
         for _ in 0..ITERATIONS {
             let Some((factors, step)) = kept.take().or_else(|| self.newton(&residual)) else {
-                return (x.as_slice().to_vec(), false);
+                return found(&x, false, is_direct);
             };
             let (mut share, length) = (1.0_f64, self.length(&step, &(&x - &step)));
             // At a kink of a law, no step may be monotonic; the best of the tried steps is used.
@@ -95,16 +109,17 @@ impl<'a> Balance<'a> {
                 share *= 0.5;
             }
             let Some((next, share, (trial, trial_residual, step))) = best else {
-                return (x.as_slice().to_vec(), length < SETTLED.sqrt());
+                return found(&x, length < SETTLED.sqrt(), is_direct);
             };
             (x, residual) = (trial, trial_residual);
+            is_direct &= is_monotonic && share == 1.0;
             if next < SETTLED {
-                return (x.as_slice().to_vec(), true);
+                return found(&x, true, is_direct);
             }
             let can_reuse = is_monotonic && share == 1.0 && next < REUSE * length;
             kept = can_reuse.then_some((factors, step));
         }
-        (x.as_slice().to_vec(), false)
+        found(&x, false, is_direct)
     }
 
     /// The factors at the present point, and the step by them.

@@ -9,7 +9,7 @@ use crate::discover::observe::run::line_at;
 use crate::discover::observe::{Evidence, Free, Kind, PredictError, Prediction, Series, Stimulus, order_of, signal_of};
 use crate::model::Model;
 use crate::response::parameters::Values;
-use crate::response::periodic::{Cycle, Drive, Periodic};
+use crate::response::periodic::{Course, Cycle, Drive, Periodic};
 use crate::response::signal::output_of;
 
 /// Harmonics of the harmonic balance: the measured three, and two more for convergence.
@@ -29,6 +29,7 @@ pub fn sweep(
         reference,
         frequency,
         amplitude,
+        time,
         ..
     } = &evidence.runs[run].stimulus
     else {
@@ -63,10 +64,18 @@ pub fn sweep(
     // Coarse data leave most lines out.
     let compared: BTreeSet<usize> = readings.iter().flat_map(|own| own.lines.iter().copied()).collect();
     let periodic = Periodic::new(model, excitation, HARMONICS);
-    let found = periodic.walk(values.as_slice(), &drives, &compared, &outputs, &groups);
+    let found = periodic.walk(values.as_slice(), &drives, course(time), &compared, &outputs, &groups);
     let cycles: BTreeMap<usize, Cycle> = compared.into_iter().zip(found).collect();
     let predict = |reading: &Reading| reading.prediction(&drives, &cycles, free.len());
     Ok(readings.iter().map(predict).collect())
+}
+
+/// The course of a sweep from the times at which it passes increasing frequencies.
+fn course(time: &[f64]) -> Course {
+    match (time.first(), time.last()) {
+        (Some(first), Some(last)) if first > last => Course::Falling,
+        _ => Course::Rising,
+    }
 }
 
 /// How a series is read from the periodic responses.
