@@ -236,8 +236,10 @@ impl<'m> Periodic<'m> {
         }
     }
 
-    /// True if the amplitude of a state differs by more than a factor of two, as after a jump to another branch. The lines of a sweep are 2 to 3 % apart, and
-    /// a linear resonance does not double from one to the next unless its damping ratio is below 2 %.
+    /// True if the amplitude of a state differs by more than a factor of two, as after a jump to another branch. All lines
+    /// of a sweep are 2 to 3 % apart, and a linear resonance doubles from one to the next only if its damping ratio is below
+    /// 2 %. Those of coarse data are further apart, so resonances pass too, which costs time alone: [`Self::rise`] then
+    /// ends at the next compared line.
     fn has_jumped(&self, a: &[f64], b: &[f64]) -> bool {
         let [a, b] = [a, b].map(|x| self.amplitudes(x));
         a.zip(b).any(|(a, b)| a > 2.0 * b || b > 2.0 * a)
