@@ -7,7 +7,7 @@ use super::base::BASE;
 use super::fidelity::{DECIMATION, Fidelity};
 use super::finite_explanation;
 use super::race::{Dropped, Finalist, entrants, race};
-use super::screen::{Point, Screened, Screening};
+use super::screen::{Entrant, Point, Screened, Screening, WITH_ALL_STARTS};
 use super::set::{Set, above_noise, is_missing, keep_best};
 use super::{Progress, Update};
 use crate::discover::answer::Rival;
@@ -67,6 +67,10 @@ pub fn explains_fitted(before: &Set, after: &Set, evidence: &Evidence) -> bool {
 pub struct SearchStart {
     pub fidelity: Fidelity,
     pub refit: Refit,
+    /// True if the fit is one by least squares. The first candidates of a set with effects then start from the given
+    /// values too: the fit of the set without the right candidate may have changed the model's parameters so much that
+    /// its fit from there ends in a local minimum.
+    is_by_least_squares: bool,
 }
 
 impl SearchStart {
@@ -85,6 +89,7 @@ impl SearchStart {
         Self {
             refit: refit.unwrap_or_else(|| own.clone()),
             fidelity,
+            is_by_least_squares: false,
         }
     }
 
@@ -95,7 +100,11 @@ impl SearchStart {
         let hypothesis = set.assembly.hypothesis();
         let from = hypothesis.place(&set.explanation.refit);
         let refit = hypothesis.fit(&from, &fidelity.coarse, BASE[0]).ok()?;
-        Some(Self { fidelity, refit })
+        Some(Self {
+            fidelity,
+            refit,
+            is_by_least_squares: false,
+        })
     }
 
     /// For a set that leaves a large residual: where an effect is missing, a discrepancy makes a large smooth residual
@@ -106,14 +115,53 @@ impl SearchStart {
         let hypothesis = set.assembly.hypothesis();
         let from = hypothesis.place(&set.explanation.refit);
         let refit = hypothesis.fit_by_least_squares(from, &fidelity.coarse, BASE[0]).ok()?;
-        Some(Self { fidelity, refit })
+        Some(Self {
+            fidelity,
+            refit,
+            is_by_least_squares: true,
+        })
     }
 }
 
-/// A start at `place` with the default values of the candidate.
-fn start_from(place: &Place, assembly: &Assembly, candidate: &Candidate) -> Option<Place> {
-    let hypothesis = assembly.hypothesis_with(candidate)?;
-    Some(Point::at_start(candidate).at(place, &hypothesis, candidate))
+/// Starts of candidates from the given values of the model, with the fitted values of the effects of a set.
+struct FromGiven<'a> {
+    assembly: &'a Assembly,
+    coarse: &'a Evidence,
+    place: Place,
+}
+
+impl<'a> FromGiven<'a> {
+    fn new(set: &'a Set, start: &'a SearchStart) -> Self {
+        let fitted = set.assembly.hypothesis().place(&start.refit).named;
+        let effects = set.assembly.effects().iter();
+        let of_effects = effects.flat_map(|own| own.unknowns.names());
+        let named = of_effects.filter_map(|name| Some((name.to_owned(), *fitted.get(name)?)));
+        let coarse = &start.fidelity.coarse;
+        Self {
+            assembly: &set.assembly,
+            coarse,
+            place: Place {
+                named: named.collect(),
+                ..Place::given(coarse)
+            },
+        }
+    }
+
+    /// The start with the default values of a candidate.
+    fn of(&self, candidate: &Candidate) -> Option<Place> {
+        let hypothesis = self.assembly.hypothesis_with(candidate)?;
+        Some(Point::at_start(candidate).at(&self.place, &hypothesis, candidate))
+    }
+
+    /// The least-squares fit from there. Without it, the first rounds of a race would drop a start so far from its
+    /// optimum.
+    fn fitted(&self, candidate: &Candidate) -> Option<Place> {
+        let hypothesis = self.assembly.hypothesis_with(candidate)?;
+        let refit = hypothesis
+            .fit_by_least_squares(self.of(candidate)?, self.coarse, BASE[0])
+            .ok()?;
+        Some(hypothesis.place(&refit))
+    }
 }
 
 fn extended(
@@ -124,12 +172,11 @@ fn extended(
     evidence: &Evidence,
     progress: Progress<'_>,
 ) -> Vec<Set> {
-    let SearchStart { fidelity, refit } = start;
+    let SearchStart { fidelity, refit, .. } = start;
     let screening = Screening::new(&set.assembly, refit, &fidelity.coarse);
     let screened = screening.of(candidates);
     // A model with a large residual has poor parameters, which makes a first-order gain unreliable. So the candidates
-    // are fitted whatever their gain, unless a learned law explains that residual. Those of the base model also start
-    // from the given values; sets with effects have already been fitted from there.
+    // are fitted whatever their gain, unless a learned law explains that residual.
     let is_far_off = lead == 0.0 && is_missing(set, evidence);
     let least = (candidates.len() as f64 / evidence.numbers.false_alarms).ln();
     // The screening uses every sixth line of the sweeps only, while the lead counts all lines.
@@ -139,12 +186,15 @@ fn extended(
         return Vec::new();
     }
     let mut entering = screening.with_starts(&entrants(candidates, &screened), candidates);
+    let given = FromGiven::new(set, start);
+    let own = |entrant: &Entrant| &candidates[entrant.candidate];
     if is_far_off && set.names().is_empty() {
-        let given = Place::given(&fidelity.coarse);
-        for own in &mut entering {
-            own.starts
-                .extend(start_from(&given, &set.assembly, &candidates[own.candidate]));
+        for entrant in &mut entering {
+            entrant.starts.extend(given.of(own(entrant)));
         }
+    } else if is_far_off && start.is_by_least_squares {
+        let first = entering.par_iter_mut().take(WITH_ALL_STARTS);
+        first.for_each(|entrant| entrant.starts.extend(given.fitted(own(entrant))));
     }
     let (finalists, dropped) = race(&set.assembly, candidates, &entering, fidelity, progress);
     let of_finalist = |finalist: Finalist| {

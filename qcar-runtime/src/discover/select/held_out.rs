@@ -37,9 +37,13 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
         let set = &sets[best];
         let predicts_better = |part: &Set| predicts_better(set, part, evidence);
         let is_part_enough = |part: &Set| {
-            // If the part leaves no more than noise, there is nothing to explain.
+            // If the part leaves no more than noise, there is nothing to explain. A small effect may still show in all
+            // runs together.
             let is_enough = || excess(&part.with_sensors_of(set, evidence), evidence) <= 0.0;
-            let explains_little = || is_enough() || explained_share(part, set, evidence) < evidence.numbers.explained();
+            let explains_little = || {
+                is_enough() && !predicts_certainly_better(set, part, evidence)
+                    || explained_share(part, set, evidence) < evidence.numbers.explained()
+            };
             let changes_little = || match part.names().is_empty() {
                 true => is_enough() && is_shown_nowhere(part, set, evidence),
                 false => explains_little(),
@@ -96,6 +100,12 @@ fn is_shown_nowhere(part: &Set, set: &Set, evidence: &Evidence) -> bool {
     let of_part = part.with_sensors_of(set, evidence);
     let [before, after] = [&*of_part, &set.explanation].map(|own| above_noise(own.misfit.fit));
     after > evidence.numbers.left * before && gain_in_score(set, part, evidence) <= 0.0
+}
+
+/// True if a set predicts the held-out runs better than another set with the same sensor errors, by the odds of a
+/// certain answer.
+fn predicts_certainly_better(set: &Set, other: &Set, evidence: &Evidence) -> bool {
+    gain_in_score(set, other, evidence) > evidence.numbers.odds_of_certain().ln()
 }
 
 /// True if a set predicts the held-out runs worse than another set with the same sensor errors, by the odds of a certain

@@ -36,7 +36,7 @@ pub struct Entrant {
 
 /// Number of candidates, those with the largest gain, that start from several points. This and the numbers below are
 /// choices that limit the time of a search.
-const WITH_ALL_STARTS: usize = 3;
+pub const WITH_ALL_STARTS: usize = 3;
 /// Number of start points of such a candidate. The others have one.
 const STARTS: usize = 3;
 /// Number of grid points per start at which the true gain is computed: those with the largest gain to first order.

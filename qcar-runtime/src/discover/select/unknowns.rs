@@ -68,6 +68,14 @@ impl Unknowns {
         }
     }
 
+    /// Names of its model parameters.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.all.iter().filter_map(|unknown| match unknown {
+            Unknown::Parameter(_, name) => Some(&**name),
+            Unknown::Coefficient(..) => None,
+        })
+    }
+
     /// The changes of its unknowns that make the effect vanish, by position in the free parameters of a fit: that of
     /// the strength, and zero for the others. `None` if it vanishes at no finite value of a free parameter.
     pub fn removal(&self, explanation: &Explanation) -> Option<Vec<(usize, f64)>> {
