@@ -57,7 +57,11 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
                 || set.adds_undetermined_effect(part) && explains_nearly_all(part)
                 || rests_on_passages(set, part, evidence)
         };
-        let leaves_less = |other: &Set| excess(&other.explanation, evidence) <= excess(&set.explanation, evidence);
+        let leaves_less = |other: &Set| {
+            let [left, by_set] = [other, set].map(|own| excess(&own.explanation, evidence));
+            // Of two sets that leave no more than noise, neither leaves less.
+            left <= by_set && (left > 0.0 || !predicts_certainly_better(set, other, evidence))
+        };
         let is_simpler = |other: &Set| {
             let is_as_good = || !predicts_better(other) || leaves_less(other);
             is_judged && !other.names().is_empty() && explains_nearly_all(other) && is_as_good()
