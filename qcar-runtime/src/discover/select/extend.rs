@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::assembly::{Assembly, Place};
+use super::assembly::{Hypothesis, Place};
 use super::base::BASE;
 use super::fidelity::{DECIMATION, Fidelity};
 use super::finite_explanation;
@@ -67,9 +67,8 @@ pub fn explains_fitted(before: &Set, after: &Set, evidence: &Evidence) -> bool {
 pub struct SearchStart {
     pub fidelity: Fidelity,
     pub refit: Refit,
-    /// True if the fit is one by least squares. The first candidates of a set with effects then start from the given
-    /// values too: the fit of the set without the right candidate may have changed the model's parameters so much that
-    /// its fit from there ends in a local minimum.
+    /// True if the fit is one by least squares. Some candidates of a set with effects then start from the given values
+    /// too: without the right candidate, the fit may have moved the parameters so far that no fit from there finds it.
     is_by_least_squares: bool,
 }
 
@@ -123,44 +122,38 @@ impl SearchStart {
     }
 }
 
-/// Starts of candidates from the given values of the model, with the fitted values of the effects of a set.
-struct FromGiven<'a> {
-    assembly: &'a Assembly,
-    coarse: &'a Evidence,
-    place: Place,
-}
-
-impl<'a> FromGiven<'a> {
-    fn new(set: &'a Set, start: &'a SearchStart) -> Self {
-        let fitted = set.assembly.hypothesis().place(&start.refit).named;
-        let effects = set.assembly.effects().iter();
-        let of_effects = effects.flat_map(|own| own.unknowns.names());
-        let named = of_effects.filter_map(|name| Some((name.to_owned(), *fitted.get(name)?)));
-        let coarse = &start.fidelity.coarse;
-        Self {
-            assembly: &set.assembly,
-            coarse,
-            place: Place {
-                named: named.collect(),
-                ..Place::given(coarse)
-            },
+/// Adds starts from the given values of the model, with the fitted values of the effects of the set; sensor errors start
+/// at zero. Every candidate of a base model has such a start. So have the first candidates of a set with effects, if the
+/// search is from its least-squares fit.
+fn add_starts_from_given(set: &Set, start: &SearchStart, candidates: &[Candidate], entering: &mut [Entrant]) {
+    let fitted = set.assembly.hypothesis().place(&start.refit).named;
+    let of_effects = set.named().flat_map(|own| own.unknowns.parameter_names());
+    let named = of_effects.filter_map(|name| Some((name.to_owned(), *fitted.get(name)?)));
+    let given = Place {
+        named: named.collect(),
+        ..Place::given(&start.fidelity.coarse)
+    };
+    let hypothesis = |entrant: &Entrant| set.assembly.hypothesis_with(&candidates[entrant.candidate]);
+    let place = |entrant: &Entrant, hypothesis: &Hypothesis<'_>| {
+        let candidate = &candidates[entrant.candidate];
+        Point::at_start(candidate).at(&given, hypothesis, candidate)
+    };
+    if set.names().is_empty() {
+        for entrant in entering {
+            let place = hypothesis(entrant).map(|hypothesis| place(entrant, &hypothesis));
+            entrant.starts.extend(place);
         }
-    }
-
-    /// The start with the default values of a candidate.
-    fn of(&self, candidate: &Candidate) -> Option<Place> {
-        let hypothesis = self.assembly.hypothesis_with(candidate)?;
-        Some(Point::at_start(candidate).at(&self.place, &hypothesis, candidate))
-    }
-
-    /// The least-squares fit from there. Without it, the first rounds of a race would drop a start so far from its
-    /// optimum.
-    fn fitted(&self, candidate: &Candidate) -> Option<Place> {
-        let hypothesis = self.assembly.hypothesis_with(candidate)?;
-        let refit = hypothesis
-            .fit_by_least_squares(self.of(candidate)?, self.coarse, BASE[0])
-            .ok()?;
-        Some(hypothesis.place(&refit))
+    } else if start.is_by_least_squares {
+        entering.par_iter_mut().take(WITH_ALL_STARTS).for_each(|entrant| {
+            // Without this fit the first rounds of the race would drop a start so far from its optimum, beside those of
+            // a model that is already fitted with other effects.
+            let fitted = hypothesis(entrant).and_then(|hypothesis| {
+                let from = place(entrant, &hypothesis);
+                let refit = hypothesis.fit_by_least_squares(from, &start.fidelity.coarse, BASE[0]);
+                Some(hypothesis.place(&refit.ok()?))
+            });
+            entrant.starts.extend(fitted);
+        });
     }
 }
 
@@ -186,15 +179,8 @@ fn extended(
         return Vec::new();
     }
     let mut entering = screening.with_starts(&entrants(candidates, &screened), candidates);
-    let given = FromGiven::new(set, start);
-    let own = |entrant: &Entrant| &candidates[entrant.candidate];
-    if is_far_off && set.names().is_empty() {
-        for entrant in &mut entering {
-            entrant.starts.extend(given.of(own(entrant)));
-        }
-    } else if is_far_off && start.is_by_least_squares {
-        let first = entering.par_iter_mut().take(WITH_ALL_STARTS);
-        first.for_each(|entrant| entrant.starts.extend(given.fitted(own(entrant))));
+    if is_far_off {
+        add_starts_from_given(set, start, candidates, &mut entering);
     }
     let (finalists, dropped) = race(&set.assembly, candidates, &entering, fidelity, progress);
     let of_finalist = |finalist: Finalist| {

@@ -14,7 +14,8 @@ use crate::discover::posterior::Explanation;
 /// if it predicts the held-out runs at least as well, if it has effects and the additional ones explain too little of
 /// its excess residual, if one of these has a parameter at its bound, or if only the cleat runs along one axis prefer
 /// the set. It also does if it explains nearly all of the residual and the fitted runs determine no parameter of an
-/// additional effect. The last three checks need no held-out runs. A set with a magnitude at its bound replaces no other.
+/// additional effect. The last three checks need no held-out runs. If it leaves no more than noise, the additional
+/// effects must make the prediction certainly better. A set with a magnitude at its bound replaces no other.
 ///
 /// If the base model leaves only noise in the held-out runs, its effects must either predict these better or explain most
 /// of the excess residual of the fitted runs.
@@ -26,8 +27,9 @@ use crate::discover::posterior::Explanation;
 /// same effects can explain.
 ///
 /// Fewer effects that are no part of the set replace it if they explain nearly all of the residual and predict the
-/// held-out runs at least as well, by the score or by the residual that they leave: several effects can imitate a law
-/// whose form is a little different. One effect also replaces several at its link that only make up for its form
+/// held-out runs at least as well, by the score or by the residual that they leave, or if they leave no more than noise
+/// and the set's prediction is not certainly better: several effects can imitate a law whose form is a little different.
+/// One effect also replaces several at its link that only make up for its form
 /// ([`explains_in_one_form`]).
 pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
     let is_judged = evidence.judging() == Role::HeldOut;
@@ -37,12 +39,12 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
         let set = &sets[best];
         let predicts_better = |part: &Set| predicts_better(set, part, evidence);
         let is_part_enough = |part: &Set| {
-            // If the part leaves no more than noise, there is nothing to explain. A small effect may still show in all
-            // runs together.
+            // If the part leaves no more than noise, there is nothing to explain. The runs together may still show a small
+            // effect.
             let is_enough = || excess(&part.with_sensors_of(set, evidence), evidence) <= 0.0;
             let explains_little = || {
-                is_enough() && !predicts_certainly_better(set, part, evidence)
-                    || explained_share(part, set, evidence) < evidence.numbers.explained()
+                explained_share(part, set, evidence) < evidence.numbers.explained()
+                    || is_enough() && !predicts_certainly_better(set, part, evidence)
             };
             let changes_little = || match part.names().is_empty() {
                 true => is_enough() && is_shown_nowhere(part, set, evidence),
@@ -57,15 +59,14 @@ pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usi
                 || set.adds_undetermined_effect(part) && explains_nearly_all(part)
                 || rests_on_passages(set, part, evidence)
         };
-        let leaves_less = |other: &Set| {
-            let [left, by_set] = [other, set].map(|own| excess(&own.explanation, evidence));
-            // Of two sets that leave no more than noise, neither leaves less.
-            left <= by_set && (left > 0.0 || !predicts_certainly_better(set, other, evidence))
+        let left = |own: &Set| excess(&own.explanation, evidence);
+        // Where no more than noise is left, only a certainly better prediction keeps the larger set.
+        let is_as_good = |other: &Set| match left(other) > 0.0 {
+            true => !predicts_better(other) || left(other) <= left(set),
+            false => !predicts_certainly_better(set, other, evidence),
         };
-        let is_simpler = |other: &Set| {
-            let is_as_good = || !predicts_better(other) || leaves_less(other);
-            is_judged && !other.names().is_empty() && explains_nearly_all(other) && is_as_good()
-        };
+        let is_simpler =
+            |other: &Set| is_judged && !other.names().is_empty() && explains_nearly_all(other) && is_as_good(other);
         let is_enough = |other: &Set| match is_part(other, set) {
             true => is_part_enough(other),
             false => is_simpler(other),

@@ -68,8 +68,8 @@ impl Unknowns {
         }
     }
 
-    /// Names of its model parameters.
-    pub fn names(&self) -> impl Iterator<Item = &str> {
+    /// Names of its model parameters, without clocks.
+    pub fn parameter_names(&self) -> impl Iterator<Item = &str> {
         self.all.iter().filter_map(|unknown| match unknown {
             Unknown::Parameter(_, name) => Some(&**name),
             Unknown::Coefficient(..) => None,
