@@ -480,7 +480,6 @@ fn a_fluid_in_a_mount_is_found_beside_the_free_play_of_a_damper() {
     let case = of_case(151, "free_play@damper and hydraulic_mount@powertrain_mount 3 seed 151");
     let [play, mount] = two_named(Order {
         programme: Programme::fast(),
-        cleats: false,
         ..case
     });
     assert_eq!([&play["name"], &play["at"]], ["free_play", "damper"]);
