@@ -472,8 +472,8 @@ fn a_stop_that_only_fitted_runs_reach_is_found_beside_a_friction_that_all_runs_s
     assert_eq!([&friction["name"], &friction["at"]], ["coulomb_friction", "damper"]);
 }
 
-/// With the play alone, the mount of the powertrain fits half as stiff again as it is. From there, the fit with the fluid
-/// in the mount ends in a local minimum; from the given values it does not.
+/// With the play alone, the fitted stiffness of the powertrain's mount is 50 % too high. From there, the fit with the
+/// fluid in the mount ends in a local minimum; from the given values it does not.
 #[test]
 #[ignore = "a whole search; .ci/run runs it"]
 fn a_fluid_in_a_mount_is_found_beside_the_free_play_of_a_damper() {

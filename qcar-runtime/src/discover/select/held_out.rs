@@ -29,8 +29,7 @@ use crate::discover::posterior::Explanation;
 /// Fewer effects that are no part of the set replace it if they explain nearly all of the residual and predict the
 /// held-out runs at least as well, by the score or by the residual that they leave, or if they leave no more than noise
 /// and the set's prediction is not certainly better: several effects can imitate a law whose form is a little different.
-/// One effect also replaces several at its link that only make up for its form
-/// ([`explains_in_one_form`]).
+/// One effect also replaces several at its link that only make up for its form ([`explains_in_one_form`]).
 pub fn supported_part(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
     let is_judged = evidence.judging() == Role::HeldOut;
     let base = &sets[best_base(sets)];
