@@ -81,10 +81,7 @@ impl Unknowns {
     pub fn removal(&self, explanation: &Explanation) -> Option<Vec<(usize, f64)>> {
         let (strength, vanishes_at) = self.strength.as_ref()?;
         let at = free_of(explanation, strength)?;
-        let own = self.all.iter().filter_map(|unknown| match unknown {
-            Unknown::Parameter(_, name) => free_of(explanation, name),
-            Unknown::Coefficient(..) => None,
-        });
+        let own = self.parameter_names().filter_map(|name| free_of(explanation, name));
         let change = |free| match free == at {
             true => vanishes_at - explanation.refit.estimate[free],
             false => 0.0,
@@ -106,10 +103,7 @@ impl Unknowns {
 
     /// True if any parameter is at its bound, shape parameters included.
     pub fn has_parameter_at_bound(&self, explanation: &Explanation) -> bool {
-        self.all.iter().any(|unknown| match unknown {
-            Unknown::Parameter(_, name) => is_at_bound(explanation, name),
-            Unknown::Coefficient(..) => false,
-        })
+        self.parameter_names().any(|name| is_at_bound(explanation, name))
     }
 
     /// True if the fitted runs determine none of its parameters: every standard error exceeds the value.
